@@ -12,6 +12,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any, cast
 
 from hasard_rs._core import Batch, Worlds, __version__
@@ -27,6 +28,7 @@ from hasard_rs.errors import (
     UnknownEnvironment,
     WorldPanicked,
 )
+from hasard_rs.events import Cause, Event, Thing
 from hasard_rs.own import OwnScenario, is_file
 from hasard_rs.registry import LEVELS, CostTerm, Scenario, Spec, bare, ids, register_all, register_environment, spec
 
@@ -41,6 +43,8 @@ else:
     register_all()
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import gymnasium
 
 
@@ -63,11 +67,12 @@ def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
     return CostWrapper(_gymnasium.make(f"hasard/{_known(env_id)}", **kwargs))
 
 
-def make_vec(env_id: str, num_envs: int = 1, **kwargs: Any) -> VectorEnv:
+def make_vec(env_id: str | Sequence[str], num_envs: int = 1, **kwargs: Any) -> VectorEnv:
     """A native vector environment, as `gymnasium.make_vec` makes it.
 
     Args:
-        env_id: one of `ids()`, with or without `hasard/`; `module:id` imports the module first.
+        env_id: one of `ids()`, with or without `hasard/`; `module:id` imports the module first; a task of your own, `my_task.toml`; or a list of
+            them, which the lanes take in turn (`help(hasard_rs.VectorEnv)`).
         num_envs: lanes, 1 to 65536.
         kwargs: keyword arguments, listed in `help(hasard_rs.Env)` and, of batches only, in `help(hasard_rs.VectorEnv)`.
 
@@ -79,8 +84,18 @@ def make_vec(env_id: str, num_envs: int = 1, **kwargs: Any) -> VectorEnv:
     """
     if not hasattr(_gymnasium, "make_vec") or not hasattr(_gymnasium.vector, "AutoresetMode"):
         raise ImportError("make_vec needs Gymnasium 1.1 or newer: pip install -U gymnasium; make and Worlds work with older ones")
+    if not isinstance(env_id, (str, os.PathLike)):
+        tasks = [_task(one) for one in env_id]
+        if not tasks:
+            raise InvalidOption("a batch needs a task; the list of ids is empty")
+        return VectorEnv(tasks=tasks, num_envs=num_envs, **kwargs)
     made = _gymnasium.make_vec(f"hasard/{_known(env_id)}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
     return cast("VectorEnv", made)
+
+
+def _task(env_id: str) -> dict[str, Any]:
+    """What makes an environment: scenario, level, and the text of a task of one's own."""
+    return dict(_gymnasium.spec(f"hasard/{_known(env_id)}").kwargs)
 
 
 def _known(env_id: str) -> str:
@@ -93,9 +108,11 @@ __all__ = [
     "LEVELS",
     "Agent",
     "Batch",
+    "Cause",
     "Closed",
     "CostTerm",
     "Env",
+    "Event",
     "HasardError",
     "InvalidAction",
     "InvalidMap",
@@ -106,6 +123,7 @@ __all__ = [
     "Run",
     "Scenario",
     "Spec",
+    "Thing",
     "UnknownEnvironment",
     "VectorEnv",
     "WorldPanicked",

@@ -92,15 +92,10 @@ def read(given: dict[str, Any], *, vector: bool) -> Arguments:
         TypeError for a name that is no argument, which names the nearest; InvalidOption for a value that it cannot have.
     """
     given = dict(given)
-    try:
-        scenario, level = given.pop("scenario"), given.pop("level")
-    except KeyError as missing:
-        raise TypeError(f"missing keyword argument {missing}; hasard_rs.make takes an id, which has both") from None
-    scenario = getattr(scenario, "value", scenario)
-    file = given.pop("scenario_file", None)
-    # An own scenario's text: known by its ids in this process from now on.
-    env_id = f"{scenario}Level{level}-v0" if file is None else _core.register_scenario(*file)[level - 1]
-    arguments = Arguments(env_id=env_id)
+    tasks = given.pop("tasks", None) if vector else None
+    if tasks is None:
+        tasks = [{name: given.pop(name) for name in ("scenario", "level", "scenario_file") if name in given}]
+    arguments = Arguments(env_id=",".join(map(_env_id, tasks)))
     own = [name for name in vars(arguments) if name not in ("env_id", "world")]
     for name, value in given.items():
         if name in _WORLD:
@@ -118,6 +113,17 @@ def read(given: dict[str, Any], *, vector: bool) -> Arguments:
     return arguments
 
 
+def _env_id(task: dict[str, Any]) -> str:
+    """The id of a task's `scenario` and `level`; with `scenario_file`, its path and text, that scenario is known in this process from now on."""
+    try:
+        scenario, level = task["scenario"], task["level"]
+    except KeyError as missing:
+        raise TypeError(f"missing keyword argument {missing}; hasard_rs.make takes an id, which has both") from None
+    scenario = getattr(scenario, "value", scenario)
+    file = task.get("scenario_file")
+    return f"{scenario}Level{level}-v0" if file is None else _core.register_scenario(*file)[level - 1]
+
+
 def _check(arguments: Arguments) -> None:
     def one_of(name: str, allowed: tuple[Any, ...]) -> None:
         value = getattr(arguments, name)
@@ -126,7 +132,9 @@ def _check(arguments: Arguments) -> None:
 
     one_of("action_format", ACTION_FORMATS)
     one_of("render_mode", (None, *RENDER_MODES))
-    one_of("infos", ("cost", "full"))
+    one_of("infos", ("cost", "full", "events"))
+    if arguments.infos == "events":
+        arguments.world["events"] = True
     bins = arguments.delta_bins
     if isinstance(bins, bool) or not isinstance(bins, int) or not 3 <= bins <= 255 or bins % 2 == 0:
         raise InvalidOption(f"delta_bins cannot be {bins!r}; it must be an odd number, 3..255")

@@ -20,7 +20,8 @@ def put(infos: Infos, key: str, column: Any, mask: np.ndarray) -> None:
     elif mask.all():
         infos[key] = column
     else:
-        infos[key] = np.where(mask.reshape(-1, *[1] * (column.ndim - 1)), column, np.zeros_like(column))
+        nothing = np.full_like(column, None) if column.dtype == object else np.zeros_like(column)
+        infos[key] = np.where(mask.reshape(-1, *[1] * (column.ndim - 1)), column, nothing)
     infos[f"_{key}"] = mask.copy()
 
 
@@ -31,7 +32,9 @@ def add(infos: Infos, info: dict[str, Any], index: int, count: int) -> None:
             add(infos.setdefault(key, {}), value, index, count)
         else:
             value = np.asarray(value)
-            column = infos.setdefault(key, np.zeros((count, *value.shape), value.dtype))
+            # Rows of their own number, such as events, have no common shape.
+            several = value.dtype.names is not None
+            column = infos.setdefault(key, np.full(count, None, object) if several else np.zeros((count, *value.shape), value.dtype))
             column[index] = value
         infos.setdefault(f"_{key}", np.zeros(count, np.bool_))[index] = True
 

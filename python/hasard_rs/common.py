@@ -42,11 +42,15 @@ class Shared:
         self.render_mode = given.render_mode
         # Lists of its own: some of Gymnasium's wrappers append to them.
         self.metadata = {**copy.deepcopy(type(self).metadata), "render_fps": 35 / given.frame_skip, **more}
-        self.safety_budget: float = worlds.safety_budget
+        # Of a batch of different tasks one a lane, and no extent.
+        mixed = "," in given.env_id
+        budgets = np.asarray(worlds.safety_budgets)
+        self.safety_budget: float | np.ndarray = budgets[worlds.lane_tasks] if mixed else worlds.safety_budget
         self.cost_terms = tuple(CostTerm(name, counted) for name, counted in worlds.cost_terms)
         self.max_episode_steps: int = worlds.episode_steps
-        self.extent: tuple[int, int, int, int] = worlds.extent
-        self.scenario_name, self.level = scenario_and_level(given.env_id)
+        self.extent: tuple[int, int, int, int] | None = worlds.extent
+        names: list[Any] = [scenario_and_level(env_id) for env_id in given.env_id.split(",")]
+        self.scenario_name, self.level = tuple(zip(*names, strict=True)) if mixed else names[0]
         self.hard_constraint, self.frame_skip = given.hard_constraint, given.frame_skip
 
     @property

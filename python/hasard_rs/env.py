@@ -41,7 +41,9 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
             max_episode_steps (None): cuts episodes off earlier; `spec.max_episode_steps` and the attribute say what holds.
             render_mode (None): "rgb_array" or "depth_array". render_resolution (None): of `render`, if other than resolution.
             seed (None): of the first reset without one; 64 bits of the operating system's if None.
-            infos ("cost"): "full" adds "cost_terms" (float64 [k]), "position" (int32 [2], map units) and "episode_seed" (uint64).
+            infos ("cost"): "full" adds "cost_terms" (float64 [k]), "position" (int32 [2], map units) and "episode_seed" (uint64); "events" adds
+                to those "events", what happened in the step: a structured array of tic, kind (`Event`), what and by (`Thing`), player, cause
+                (`Cause`), x, y (map units) and amount, -1 where there is none.
             env_stats (False): adds "env_stats", a dict of floats by name.
             safety_budget (None): an attribute, without effect on the world.
             maps, or map (None): a folder, a WAD, or "auto" for the published package's. iwad (None): a file, or "auto".

@@ -23,13 +23,15 @@ class Infos:
     Args:
         worlds: whose.
         scenario: its name.
-        infos: "cost" or "full".
+        infos: "cost", "full" or "events".
         env_stats: whether the statistics of every step are told.
     """
 
     def __init__(self, worlds: Any, scenario: str, infos: str, env_stats: bool) -> None:
         self.worlds = worlds
-        self.full = infos == "full"
+        self.full = infos in ("full", "events")
+        self.events = infos == "events"
+        self.tasks = worlds.lane_tasks if "," in worlds.env_id else None
         self.env_stats = env_stats
         self.published = _PUBLISHED.get(scenario, {})
         self.statistics = list(worlds.statistics)
@@ -43,6 +45,10 @@ class Infos:
             columns["cost_terms"] = batch.cost_terms.astype(np.float64)
             columns["position"] = np.array(batch.positions)
             columns["episode_seed"] = self.worlds.episode_seeds[batch.lanes]
+        if self.tasks is not None:
+            columns["task"] = self.tasks[batch.lanes]
+        if self.events:
+            columns["events"] = _by_lane(batch)
         if self.env_stats:
             self.cost[batch.lanes] += columns["cost"]
             columns["env_stats"] = self._stats(self.cost[batch.lanes], batch.statistics)
@@ -80,6 +86,15 @@ class Infos:
             statistics = np.array([[value for _, value in self.worlds.stats(lane)]])
             info["env_stats"] = {name: float(column[0]) for name, column in self._stats(np.zeros(1), statistics).items()}
         return info
+
+
+def _by_lane(batch: Any) -> Any:
+    """The events of each row, an array each, as one column of objects."""
+    column = np.empty(len(batch.lanes), dtype=object)
+    offsets = batch.event_offsets.tolist()
+    for index, (begin, end) in enumerate(zip(offsets, offsets[1:], strict=False)):
+        column[index] = batch.events[begin:end]
+    return column
 
 
 def row(columns: dict[str, Any], index: int) -> dict[str, Any]:

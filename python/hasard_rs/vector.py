@@ -49,7 +49,13 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
     Raises:
         UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no argument; ImportError with an older Gymnasium.
 
+    A batch of different tasks, `make_vec(["hasard/RemedyRushLevel1-v0", "my_task.toml"], 64)`, has the buttons, cost terms and statistics of all
+    of them; lane i has task i modulo their number. A button that a task does not have does nothing there (`action_masks`), infos have "task",
+    and scenario_name, level are tuples, safety_budget an array of one a lane.
+
     Attributes:
+        tasks: ids of the tasks. lane_tasks: int32 [num_envs], which of them each lane has. action_masks: bool [num_envs, sum of the
+        sub-actions' choices], which choices do something in each lane.
         single_observation_space, single_action_space: as of an `Env`. observation_space, action_space: batches of them.
         autoreset_mode: Gymnasium's enum, in `metadata` too. cost_terms, safety_budget, max_episode_steps, extent, scenario_name, level,
         hard_constraint, frame_skip, spec: as of an `Env`.
@@ -103,6 +109,21 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         self._describe(autoreset_mode=self.autoreset_mode)
         if not copy:
             self._lend()
+
+    @property
+    def tasks(self) -> tuple[str, ...]:
+        """The ids of the tasks, one where all lanes have the same."""
+        return tuple(f"hasard/{env_id}" for env_id in self._worlds.env_id.split(","))
+
+    @property
+    def lane_tasks(self) -> np.ndarray:
+        """Which of the tasks each lane has: int32 [num_envs]."""
+        return self._worlds.lane_tasks
+
+    @property
+    def action_masks(self) -> np.ndarray:
+        """Which choices of each sub-action, one sub-action after the other, do something in each lane's task: bool [num_envs, choices]."""
+        return self._worlds.action_masks
 
     @property
     def worlds(self) -> Worlds:

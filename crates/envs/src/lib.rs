@@ -55,6 +55,7 @@ pub use hasard_engine::render::FrameSize;
 pub use interface::batch::{Batch, Episode, EpisodeCost, episode_costs};
 pub use interface::buffer::{Buffer, Memory};
 pub use interface::environment::{CostTerm, Environment, Step};
+pub use interface::happening::{DAMAGE_CAUSES, Happening, HappeningKind};
 pub use options::{EnvOptions, Layout, ObservationKind};
 pub use policies::policy::{Policy, PolicyRun};
 pub use policies::rollout::rollout;
@@ -65,4 +66,6 @@ pub use single::snapshot::Snapshot;
 pub use spaces::action::{
     ActionGroup, ActionSpace, BUTTONS, Controls, DELTA_DEGREES, DeltaButton, Move, parse_command,
 };
-pub use vec_env::{Autoreset, FinalObservations, LaneState, Restart, VecEnv, VecOptions};
+pub use vec_env::{
+    Autoreset, FinalObservations, LaneState, MixedTask, Mixture, Restart, VecEnv, VecOptions,
+};

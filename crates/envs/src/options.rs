@@ -68,6 +68,8 @@ pub struct EnvOptions {
     pub published_depth: bool,
     /// Segmented frames have the published colours, some of which several classes share.
     pub published_colours: bool,
+    /// Notes what happens in each step: see [`crate::Environment::happenings`].
+    pub events: bool,
     /// Maps to play in instead of the built-in ones, from files: the published ones, or a user's
     /// own.
     pub maps: Option<std::sync::Arc<Maps>>,
@@ -97,6 +99,7 @@ impl Default for EnvOptions {
             frame_stack: 1,
             published_depth: false,
             published_colours: false,
+            events: false,
             maps: None,
             map: None,
             assets: None,

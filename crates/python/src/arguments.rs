@@ -8,7 +8,7 @@ use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
 
 /// Every name that is understood, for the nearest one to a wrong name.
-const NAMES: [&str; 19] = [
+const NAMES: [&str; 20] = [
     "rules",
     "early_creatures",
     "hard_constraint",
@@ -21,6 +21,7 @@ const NAMES: [&str; 19] = [
     "layout",
     "frame_stack",
     "max_episode_steps",
+    "events",
     "seed",
     "safety_budget",
     "iwad",
@@ -77,6 +78,7 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
             "max_episode_steps" => {
                 options.max_episode_steps = Some(number(&name, &value, 1, u32::MAX.into())? as u32)
             }
+            "events" => options.events = typed(&name, &value, "True or False")?,
             "seed" if value.is_none() => arguments.seed = None,
             "seed" => arguments.seed = Some(seed(&value)?),
             "safety_budget" if value.is_none() => arguments.safety_budget = None,

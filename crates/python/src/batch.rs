@@ -19,6 +19,9 @@ use std::sync::Arc;
 ///     final_lanes: int32 [f], the lanes whose episode ended and whose last observations are in
 ///         final_observations.
 ///     final_observations: uint8 [f, *observation_shape].
+///     events: what happened in the step, lane after lane, where it was asked for: a structured
+///         array [e] of tic, kind, what, by, player, cause, x, y, amount; see `hasard_rs.Event`.
+///     event_offsets: int64 [m + 1], where the events of each row begin, and the last one's end.
 ///     episodes: for each episode that ended a dict: lane, seed, return, cost, length (steps),
 ///         terminated, truncated, costs (by term), statistics (by name).
 #[pyclass(frozen, get_all, module = "hasard_rs._core")]
@@ -34,6 +37,8 @@ pub struct Batch {
     lanes: Py<PyAny>,
     final_lanes: Py<PyAny>,
     final_observations: Py<PyAny>,
+    events: Py<PyAny>,
+    event_offsets: Py<PyAny>,
     episodes: Py<PyAny>,
 }
 
@@ -99,6 +104,7 @@ impl Batch {
                 None => Ok(array(py, own.to_vec(), shape)?.unbind()),
             }
         }
+        let [events, event_offsets] = crate::events::arrays(py, batch)?;
         Ok(Batch {
             observations,
             rewards: given(py, bound.rewards, &batch.rewards, &[count])?,
@@ -116,6 +122,8 @@ impl Batch {
                 &final_shape,
             )?
             .unbind(),
+            events,
+            event_offsets,
             episodes: episodes(py, &batch.episodes)?,
         })
     }

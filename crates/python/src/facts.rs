@@ -4,7 +4,8 @@ use hasard_envs::{ActionSpace, Autoreset, CostTerm, EnvId, EnvOptions};
 
 /// What is fixed about worlds once they are made.
 pub struct Facts {
-    pub id: EnvId,
+    /// The tasks: one, or several that the lanes take in turn.
+    pub tasks: Vec<Task>,
     pub lanes: usize,
     pub groups: usize,
     pub autoreset: Autoreset,
@@ -12,17 +13,31 @@ pub struct Facts {
     pub shape: [usize; 3],
     pub terms: &'static [CostTerm],
     pub statistics: Vec<&'static str>,
-    pub safety_budget: f64,
-    pub episode_steps: u32,
-    pub extent: [i32; 4],
     /// Seed of the first episodes, where a reset names none.
     pub seed: Option<u64>,
     /// What saved lanes must have been saved from.
     pub kind: String,
 }
 
+/// One of the tasks of worlds.
+pub struct Task {
+    pub id: EnvId,
+    pub safety_budget: f64,
+    pub episode_steps: u32,
+    pub extent: [i32; 4],
+    /// Of each choice of each sub-action, whether it does something.
+    pub mask: Vec<bool>,
+}
+
+impl Facts {
+    /// Which task a lane has.
+    pub fn task_of(&self, lane: usize) -> usize {
+        lane % self.tasks.len()
+    }
+}
+
 /// Everything that decides what a saved lane's actions lead to, as text.
-pub fn kind(id: EnvId, options: &EnvOptions, autoreset: Autoreset) -> String {
+pub fn kind(ids: &[EnvId], options: &EnvOptions, autoreset: Autoreset) -> String {
     let EnvOptions {
         rules,
         early_creatures,
@@ -33,9 +48,13 @@ pub fn kind(id: EnvId, options: &EnvOptions, autoreset: Autoreset) -> String {
         ..
     } = options;
     let early = if *early_creatures { " early" } else { "" };
-    let file = id.scenario.file.map_or(String::new(), |file| format!(" {}", file.hash));
+    let named = |id: &EnvId| {
+        let file = id.scenario.file.map_or(String::new(), |file| format!(" {}", file.hash));
+        format!("{id}{file}")
+    };
+    let ids = ids.iter().map(named).collect::<Vec<_>>().join(",");
     format!(
-        "{id}{file} {rules:?}{early} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}"
+        "{ids} {rules:?}{early} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}"
     )
 }
 

@@ -2,7 +2,9 @@
 
 use crate::lane::{SharedEnv, lock};
 use hasard_engine::render::FrameSize;
-use hasard_envs::{Batch, Env, EnvError, EnvOptions, LaneState, VecEnv, VecOptions};
+use hasard_envs::{
+    Batch, Env, EnvError, EnvId, EnvOptions, Environment, LaneState, Mixture, VecEnv, VecOptions,
+};
 use hasard_play::{ViewKind, Views};
 use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex};
@@ -28,15 +30,29 @@ pub struct Inner {
 }
 
 impl Inner {
-    pub fn new(id: &str, env_options: &EnvOptions, options: VecOptions) -> Result<Inner, EnvError> {
+    /// Worlds of one task, or of several that the lanes take in turn.
+    pub fn new(
+        ids: &[EnvId],
+        env_options: &EnvOptions,
+        options: VecOptions,
+    ) -> Result<Inner, EnvError> {
         options.check()?;
-        let first = Env::new(id, env_options)?;
+        let first = |id: &EnvId| {
+            let scenario = Some(id.scenario);
+            Env::new(&id.to_string(), &EnvOptions { scenario, ..env_options.clone() })
+        };
+        let firsts = ids.iter().map(first).collect::<Result<Vec<Env>, _>>()?;
         let mut envs = Vec::with_capacity(options.lanes);
-        let worlds = VecEnv::from_fn(options, |_| {
-            let lane = SharedEnv::new(first.sibling());
+        let mut lane = |task: usize| -> Box<dyn Environment> {
+            let lane = SharedEnv::new(firsts[task].sibling());
             envs.push(lane.handle());
-            Ok(Box::new(lane))
-        })?;
+            Box::new(lane)
+        };
+        let worlds = if firsts.len() == 1 {
+            VecEnv::from_fn(options, |_| Ok(lane(0)))?
+        } else {
+            VecEnv::mixed(Mixture::of(&firsts)?, options, |task, _| Ok(lane(task)))?
+        };
         let (worlds, process) = (ManuallyDrop::new(worlds), std::process::id());
         Ok(Inner {
             worlds,

@@ -1,6 +1,6 @@
 //! An environment that its batch steps and its owner looks at.
 
-use hasard_envs::{ActionSpace, CostTerm, Env, Environment, Episode, Step};
+use hasard_envs::{ActionSpace, CostTerm, Env, Environment, Episode, Happening, Step};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// An environment shared between a batch, which steps it, and the object that Python holds, which
@@ -12,6 +12,7 @@ pub struct SharedEnv {
     shape: [usize; 3],
     terms: &'static [CostTerm],
     costs: Vec<f64>,
+    happenings: Vec<Happening>,
 }
 
 impl SharedEnv {
@@ -24,6 +25,7 @@ impl SharedEnv {
             shape,
             terms,
             costs: vec![0.0; terms.len()],
+            happenings: Vec::new(),
         }
     }
 
@@ -59,12 +61,15 @@ impl Environment for SharedEnv {
     fn reset(&mut self, seed: u64) {
         self.lock().reset(seed);
         self.costs.fill(0.0);
+        self.happenings.clear();
     }
 
     fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
         let mut env = lock(&self.env);
         let step = Environment::step(&mut *env, actions, deltas);
         self.costs.copy_from_slice(env.step_costs());
+        self.happenings.clear();
+        self.happenings.extend_from_slice(env.happenings());
         step
     }
 
@@ -86,6 +91,10 @@ impl Environment for SharedEnv {
 
     fn stats(&self, stats: &mut Vec<(&'static str, f64)>) {
         Environment::stats(&*self.lock(), stats);
+    }
+
+    fn happenings(&self) -> &[Happening] {
+        &self.happenings
     }
 
     fn episode(&self) -> Episode {

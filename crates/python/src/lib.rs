@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `worlds` | the class `Worlds`: every call lets the interpreter go while the worlds work |
 //! | `inner`, `lane` | the worlds behind it, without Python |
-//! | `batch`, `pool` | results as arrays; observations stay in the memory that they were drawn in |
+//! | `batch`, `events`, `pool` | results as arrays; observations stay in the memory that they were drawn in |
 //! | `bind`, `memory` | results written into the caller's arrays |
 //! | `actions`, `resets`, `arguments` | what Python gives, checked before any world moves |
 //! | `facts`, `registry` | what is fixed about worlds, and the 18 environments |
@@ -23,6 +23,7 @@ mod arguments;
 mod batch;
 mod bind;
 mod errors;
+mod events;
 mod facts;
 mod inner;
 mod lane;
@@ -54,6 +55,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(program::train, module)?)?;
     module.add_function(wrap_pyfunction!(program::follow, module)?)?;
     module.add_function(wrap_pyfunction!(arguments::frame_size, module)?)?;
+    module.add_function(wrap_pyfunction!(events::event_names, module)?)?;
     module.add_function(wrap_pyfunction!(registry::ids, module)?)?;
     module.add_function(wrap_pyfunction!(registry::describe, module)?)?;
     module.add_function(wrap_pyfunction!(registry::check_scenario, module)?)?;

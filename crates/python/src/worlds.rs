@@ -6,11 +6,11 @@ use crate::batch::{Arrays, Batch};
 use crate::errors::{
     CLOSED, INVALID_ACTION, INVALID_OPTION, OUT_OF_TURN, RESET_NEEDED, WORLD_PANICKED, raise,
 };
-use crate::facts::{self, Facts};
+use crate::facts::{self, Facts, Task};
 use crate::inner::Inner;
 use crate::pool::{Pool, array};
 use crate::resets::{self, Seeds};
-use hasard_envs::{Autoreset, Env, EnvError, FinalObservations, LaneState, VecOptions};
+use hasard_envs::{Autoreset, Env, EnvError, EnvId, FinalObservations, LaneState, VecOptions};
 use hasard_play::ViewKind;
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -53,7 +53,8 @@ enum CameBack {
 /// turns.
 ///
 /// Args:
-///     env_id: with or without `hasard/`.
+///     env_id: with or without `hasard/`; several, joined by commas, are taken by the lanes in
+///         turn, with the buttons, cost terms and statistics of all.
 ///     num_envs: lanes, 1 to 65536.
 ///     num_threads: worker threads beside the caller's; None: one for every four lanes, as far as
 ///         there are processors. No result depends on it.
@@ -63,7 +64,7 @@ enum CameBack {
 ///         episode's, or only those "truncated".
 ///     statistics: whether batches hold the statistics of every step.
 ///     arguments: rules, hard_constraint, full_actions, frame_skip, resolution, observation,
-///         layout, frame_stack, max_episode_steps, seed, safety_budget, maps, iwad,
+///         layout, frame_stack, max_episode_steps, events, seed, safety_budget, maps, iwad,
 ///         published_depth, published_colours, as in `help(hasard_rs.Env)`.
 ///
 /// Raises:
@@ -284,10 +285,20 @@ impl Worlds {
         statistics: bool,
         arguments: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Worlds> {
-        let id = crate::registry::environment(env_id).map_err(|error| raise(py, &error))?;
-        let mut given = arguments::read(py, arguments)?;
-        given.options.scenario = Some(id.scenario);
+        let ids = env_id
+            .split(',')
+            .map(|id| crate::registry::environment(id.trim()))
+            .collect::<Result<Vec<EnvId>, EnvError>>()
+            .map_err(|error| raise(py, &error))?;
+        let given = arguments::read(py, arguments)?;
         let num_envs = arguments::number("num_envs", num_envs, 1, 65_536)? as usize;
+        if num_envs < ids.len() {
+            let why = format!(
+                "num_envs cannot be {num_envs}; {} tasks need a lane each at least",
+                ids.len()
+            );
+            return Err(INVALID_OPTION.error(py, why));
+        }
         let num_threads = num_threads
             .map(|given| arguments::number("num_threads", given, 0, 1024))
             .transpose()?;
@@ -317,13 +328,25 @@ impl Worlds {
             statistics,
             ..VecOptions::default()
         };
-        let made = py.detach(|| Inner::new(&id.to_string(), &given.options, options));
+        let made = py.detach(|| Inner::new(&ids, &given.options, options));
         let mut inner = made.map_err(|error| raise(py, &error))?;
-        let (episode_steps, extent) =
-            inner.look(0, |env: &mut Env| (env.episode_steps(), env.extent()));
+        let rules = given.options.rules;
+        let worlds = inner.worlds();
+        let masks: Vec<Vec<bool>> = worlds.tasks().into_iter().map(|task| task.mask).collect();
+        let choices = worlds.action_space().sizes().iter().sum();
+        // Lanes take the tasks in turn: the first lanes have one of each.
+        let tasks = ids.iter().enumerate().map(|(index, &id)| {
+            let (episode_steps, extent) =
+                inner.look(index, |env: &mut Env| (env.episode_steps(), env.extent()));
+            let mask = masks.get(index).cloned().unwrap_or_else(|| vec![true; choices]);
+            let safety_budget =
+                given.safety_budget.unwrap_or_else(|| id.scenario.safety_budget(rules));
+            Task { id, safety_budget, episode_steps, extent, mask }
+        });
+        let tasks: Vec<Task> = tasks.collect();
         let worlds = inner.worlds();
         let facts = Facts {
-            id,
+            tasks,
             lanes: num_envs,
             groups,
             autoreset,
@@ -331,13 +354,8 @@ impl Worlds {
             shape: worlds.observation_shape(),
             terms: worlds.cost_terms(),
             statistics: worlds.statistics().to_vec(),
-            safety_budget: given
-                .safety_budget
-                .unwrap_or_else(|| id.scenario.safety_budget(given.options.rules)),
-            episode_steps,
-            extent,
             seed: given.seed,
-            kind: facts::kind(id, &given.options, autoreset),
+            kind: facts::kind(&ids, &given.options, autoreset),
         };
         Ok(Worlds {
             facts,
@@ -688,7 +706,11 @@ impl Worlds {
         #[pyo3(from_py_with = arguments::lane)] lane: usize,
     ) -> PyResult<Vec<(&'static str, f64)>> {
         self.check_lane(lane)?;
-        self.with(py, |inner| Ok(inner.look(lane, |env| env.stats())))
+        let own = self.with(py, |inner| Ok(inner.look(lane, |env| env.stats())))?;
+        let of = |name: &'static str| {
+            (name, own.iter().find(|(known, _)| *known == name).map_or(0.0, |(_, value)| *value))
+        };
+        Ok(self.facts.statistics.iter().map(|name| of(name)).collect())
     }
 
     /// Where each lane's player stands, in map units: int32 [num_envs, 2].
@@ -755,10 +777,30 @@ impl Worlds {
         py.detach(|| self.inner.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).is_none())
     }
 
-    /// The environment's id, without `hasard/`.
+    /// The environment's id, without `hasard/`; several are joined by commas.
     #[getter]
     fn env_id(&self) -> String {
-        self.facts.id.to_string()
+        let ids: Vec<String> = self.facts.tasks.iter().map(|task| task.id.to_string()).collect();
+        ids.join(",")
+    }
+
+    /// Which of the tasks, by the place of its id, each lane has: int32 [num_envs].
+    #[getter]
+    fn lane_tasks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let lanes = self.facts.lanes;
+        let tasks: Vec<i32> = (0..lanes).map(|lane| self.facts.task_of(lane) as i32).collect();
+        array(py, tasks, &[lanes])
+    }
+
+    /// Whether each choice of each sub-action does something in a lane's task, one sub-action after
+    /// the other: bool [num_envs, sum(nvec)].
+    #[getter]
+    fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let lanes = self.facts.lanes;
+        let mask = |lane| &self.facts.tasks[self.facts.task_of(lane)].mask;
+        let masks: Vec<bool> = (0..lanes).flat_map(mask).copied().collect();
+        let choices = masks.len() / lanes;
+        array(py, masks, &[lanes, choices])
     }
 
     /// Number of lanes.
@@ -803,26 +845,34 @@ impl Worlds {
         PyTuple::new(py, &self.facts.statistics)
     }
 
-    /// Cost that an episode may have.
+    /// Cost that an episode may have, of each task.
+    #[getter]
+    fn safety_budgets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.facts.tasks.iter().map(|task| task.safety_budget))
+    }
+
+    /// Cost that an episode may have, of the first task.
     #[getter]
     fn safety_budget(&self) -> f64 {
-        self.facts.safety_budget
+        self.facts.tasks[0].safety_budget
     }
 
-    /// Steps of an episode that only time ends.
+    /// Steps of an episode that only time ends, of the task with the longest.
     #[getter]
     fn episode_steps(&self) -> u32 {
-        self.facts.episode_steps
+        self.facts.tasks.iter().map(|task| task.episode_steps).max().unwrap_or_default()
     }
 
-    /// The map's extent: x from, y from, x to, y to, in map units.
+    /// The map's extent: x from, y from, x to, y to, in map units; None where the tasks have maps
+    /// of their own.
     #[getter]
-    fn extent(&self) -> (i32, i32, i32, i32) {
-        self.facts.extent.into()
+    fn extent(&self) -> Option<(i32, i32, i32, i32)> {
+        let [task] = &self.facts.tasks[..] else { return None };
+        Some(task.extent.into())
     }
 
     fn __repr__(&self) -> String {
-        format!("<Worlds {} x {}>", self.facts.id, self.facts.lanes)
+        format!("<Worlds {} x {}>", self.env_id(), self.facts.lanes)
     }
 }
 

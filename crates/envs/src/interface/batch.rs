@@ -2,6 +2,7 @@
 
 use crate::interface::buffer::Buffer;
 use crate::interface::environment::CostTerm;
+use crate::interface::happening::Happening;
 
 /// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the
 /// caller and handed over for the time of a step, so that nothing is copied. Made by
@@ -37,6 +38,12 @@ pub struct Batch {
     /// Out: the true last observations of those lanes, `[final lanes, ..observation shape]`: one
     /// array.
     pub final_observations: Vec<u8>,
+    /// Out: what happened in the step, of lane after lane, before any reset; see
+    /// [`crate::EnvOptions::events`].
+    pub happenings: Vec<Happening>,
+    /// Out: where each lane's happenings begin, and after them where the last one's end, `[lanes +
+    /// 1]`.
+    pub happening_offsets: Vec<usize>,
     /// Out: the episodes that ended in this step, in lane order.
     pub episodes: Vec<Episode>,
 }
@@ -46,6 +53,15 @@ impl Batch {
     #[must_use]
     pub fn lanes(&self) -> usize {
         self.rewards.len()
+    }
+
+    /// What happened in a lane's step.
+    #[must_use]
+    pub fn happenings_of(&self, lane: usize) -> &[Happening] {
+        match self.happening_offsets.get(lane..lane + 2) {
+            Some(&[from, to]) => &self.happenings[from..to],
+            _ => &[],
+        }
     }
 
     /// The lanes that have a true last observation, each with it.

@@ -1,6 +1,7 @@
 //! What a batch asks of the worlds in it.
 
 use crate::interface::batch::Episode;
+use crate::interface::happening::Happening;
 use crate::spaces::action::ActionSpace;
 
 /// What a step brought.
@@ -84,6 +85,12 @@ pub trait Environment: Send {
         let mut stats = Vec::new();
         self.stats(&mut stats);
         stats.into_iter().map(|(name, _)| name).collect()
+    }
+
+    /// What happened in the last step, in order; nothing unless [`crate::EnvOptions::events`] asks
+    /// for it. Of the tics before the first observation, and of a reset, nothing is noted.
+    fn happenings(&self) -> &[Happening] {
+        &[]
     }
 
     /// The episode so far, as it would be reported if it ended now (its lane is left 0), with every

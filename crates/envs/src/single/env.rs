@@ -3,6 +3,7 @@
 use crate::error::EnvError;
 use crate::interface::batch::{Episode, episode_costs};
 use crate::interface::environment::{CostTerm, Environment, Step};
+use crate::interface::happening::Happening;
 use crate::options::EnvOptions;
 use crate::registry::scenario::EnvId;
 use crate::scenarios::common::outcome::MOST_TERMS;
@@ -45,6 +46,8 @@ pub struct Env {
     pub(crate) last: Step,
     pub(crate) last_costs: [f64; MOST_TERMS],
     pub(crate) eye: Eye,
+    /// What happened in the last step, if that is asked for.
+    happenings: Vec<Happening>,
 }
 
 impl Env {
@@ -72,6 +75,7 @@ impl Env {
             last: Step::default(),
             last_costs: [0.0; MOST_TERMS],
             eye,
+            happenings: Vec::new(),
         };
         env.reset(0);
         env
@@ -128,6 +132,7 @@ impl Env {
         self.totals = Totals::default();
         self.last = Step::default();
         self.last_costs = [0.0; MOST_TERMS];
+        self.happenings.clear();
         self.eye.open(&self.game.world);
     }
 
@@ -149,14 +154,25 @@ impl Env {
     /// Holds buttons for `frame_skip` tics, whether they are in the action space or not.
     pub fn step_buttons(&mut self, command: Command) -> Step {
         if self.last.ended() {
+            self.happenings.clear();
             self.last_costs = [0.0; MOST_TERMS];
             return Step { reward: 0.0, cost: 0.0, ..self.last };
         }
         let game = &mut self.game;
         game.world.prefetch();
         (game.outcome.reward, game.outcome.costs) = (0.0, [0.0; MOST_TERMS]);
+        self.happenings.clear();
         for _ in 0..self.blueprint.options.frame_skip {
-            game.tic(command);
+            if self.blueprint.options.events {
+                let happenings = &mut self.happenings;
+                game.tic_noted(command, |world| {
+                    happenings.extend(
+                        world.events.iter().filter_map(|event| Happening::of(*event, world)),
+                    );
+                });
+            } else {
+                game.tic(command);
+            }
             if game.over() || game.world.tic >= self.blueprint.end_tic {
                 break;
             }
@@ -282,6 +298,12 @@ impl Env {
         extent
     }
 
+    /// What happened in the last step: see [`Environment::happenings`].
+    #[must_use]
+    pub fn happenings(&self) -> &[Happening] {
+        &self.happenings
+    }
+
     /// The episode so far, as it would be reported if it ended now.
     #[must_use]
     pub fn episode(&self) -> Episode {
@@ -366,6 +388,10 @@ impl Environment for Env {
 
     fn stats(&self, stats: &mut Vec<(&'static str, f64)>) {
         self.game.rules.stats(&self.game.world, stats);
+    }
+
+    fn happenings(&self) -> &[Happening] {
+        Env::happenings(self)
     }
 
     fn episode(&self) -> Episode {

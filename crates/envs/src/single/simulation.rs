@@ -46,15 +46,23 @@ impl Game {
     /// The tic after the one in which the rules finished the episode does not run: it is then that
     /// the episode ends, which may be a policy step later (recorded: the tic of the last landing is
     /// still seen, the next is not).
-    pub fn tic(&mut self, command: Command) {
+    ///
+    /// `noted` sees the world with the events that the scripts have read.
+    pub fn tic_noted(&mut self, command: Command, noted: impl FnOnce(&World)) {
         if self.outcome.finished {
             self.left = true;
             return;
         }
         self.world.run_thinkers(&[command]);
         self.rules.script(&mut self.world, &mut self.outcome);
+        noted(&self.world);
         self.world.events.clear();
         self.world.finish_tic();
+    }
+
+    /// Runs one tic.
+    pub fn tic(&mut self, command: Command) {
+        self.tic_noted(command, |_| ());
     }
 
     /// Whether death or the rules have ended the episode.

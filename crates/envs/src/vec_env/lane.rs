@@ -1,7 +1,7 @@
 //! A lane: one environment of a batch, with the seeds of its episodes.
 
 use super::{Autoreset, FinalObservations, LaneState, Restart};
-use crate::{Batch, Environment, Episode, Step};
+use crate::{Batch, Environment, Episode, Happening, Step};
 use hasard_engine::math::Rng;
 
 /// One lane's parts of a batch's buffers, or those of several neighbouring lanes.
@@ -98,19 +98,25 @@ pub(super) struct Outbox {
     /// (lane of the batch, observation).
     pub final_observations: Vec<(usize, Vec<u8>)>,
     pub episodes: Vec<Episode>,
+    /// (lane of the batch, what happened there).
+    pub happenings: Vec<(usize, Vec<Happening>)>,
     pub panic: Option<String>,
 }
 
 impl Outbox {
     /// Whether there is nothing to report.
     pub fn is_empty(&self) -> bool {
-        self.final_observations.is_empty() && self.episodes.is_empty() && self.panic.is_none()
+        self.final_observations.is_empty()
+            && self.episodes.is_empty()
+            && self.happenings.is_empty()
+            && self.panic.is_none()
     }
 
     /// Takes over what another has to report.
     pub fn append(&mut self, other: &mut Outbox) {
         self.final_observations.append(&mut other.final_observations);
         self.episodes.append(&mut other.episodes);
+        self.happenings.append(&mut other.happenings);
         self.panic = self.panic.take().or(other.panic.take());
     }
 
@@ -120,6 +126,19 @@ impl Outbox {
         for (lane, observation) in self.final_observations {
             batch.final_lanes.push(lane);
             batch.final_observations.extend_from_slice(&observation);
+        }
+        self.happenings.sort_by_key(|&(lane, _)| lane);
+        // First how many each lane has, then where they end.
+        batch.happening_offsets.clear();
+        batch.happening_offsets.resize(batch.lanes() + 1, 0);
+        for (lane, happenings) in self.happenings {
+            batch.happening_offsets[lane + 1] = happenings.len();
+            batch.happenings.extend(happenings);
+        }
+        let mut end = 0;
+        for offset in &mut batch.happening_offsets {
+            end += *offset;
+            *offset = end;
         }
         self.episodes.sort_by_key(|episode| episode.lane);
         batch.episodes = self.episodes;
@@ -267,6 +286,9 @@ impl Lane {
             (Some(last), _) => (Step { reward: 0.0, cost: 0.0, ..last }, false),
             (None, _) => {
                 let step = self.advance(slices.actions, slices.deltas);
+                if !self.env.happenings().is_empty() {
+                    outbox.happenings.push((index, self.env.happenings().to_vec()));
+                }
                 if step.ended() {
                     self.ended = Some(step);
                     let episode = Episode { lane: self.index, ..self.env.episode() };

@@ -7,14 +7,16 @@ mod handover;
 mod job;
 mod lane;
 mod lane_state;
+mod mixed;
 mod options;
 mod worker;
 
 pub use job::Restart;
 pub use lane_state::LaneState;
+pub use mixed::{MixedTask, Mixture};
 pub use options::{Autoreset, FinalObservations, VecOptions};
 
-use crate::{ActionSpace, Batch, CostTerm, Env, EnvError, EnvOptions, Environment};
+use crate::{ActionSpace, Batch, CostTerm, EnvError, EnvOptions, Environment};
 use crew::Crew;
 use job::{Chosen, Job, Task};
 use lane::Lane;
@@ -51,6 +53,7 @@ pub struct VecEnv {
     cost_terms: &'static [CostTerm],
     statistics: Vec<&'static str>,
     extent: Option<[i32; 4]>,
+    mixture: Option<Mixture>,
     options: VecOptions,
     crew: Crew,
     /// Lanes whose episode is over and whose next one has not begun.
@@ -62,15 +65,59 @@ pub struct VecEnv {
 }
 
 impl VecEnv {
-    /// A batch of one environment of the benchmark; map, pictures and tables are shared by all
-    /// lanes.
+    /// A batch of one environment of the benchmark, or of several, joined by commas, which the
+    /// lanes take in turn ([`VecEnv::mixed`]); map, pictures and tables are shared by all lanes of
+    /// a task.
     pub fn new(
         id: &str,
         env_options: &EnvOptions,
         options: VecOptions,
     ) -> Result<VecEnv, EnvError> {
-        let first = Env::new(id, env_options)?;
+        let mut firsts = mixed::environments(id, env_options)?;
+        if firsts.len() > 1 {
+            let mixture = Mixture::of(&firsts)?;
+            return VecEnv::mixed(mixture, options, |task, _| Ok(Box::new(firsts[task].sibling())));
+        }
+        let first = firsts.swap_remove(0);
         VecEnv::from_fn(options, |_| Ok(Box::new(first.sibling())))
+    }
+
+    /// A batch of different tasks with one action space: the lane of number `n` has task `n` modulo
+    /// the number of tasks. `make` is given a task and the lane's index.
+    ///
+    /// ```
+    /// use hasard_envs::{EnvOptions, VecEnv, VecOptions};
+    /// let ids = "RemedyRushLevel1-v0,CollateralDamageLevel1-v0";
+    /// let worlds = VecEnv::new(ids, &EnvOptions::default(), VecOptions::default())?;
+    /// assert_eq!(worlds.tasks().len(), 2);
+    /// // TURN, FORWARD, SPEED and JUMP of the one and ATTACK of the other.
+    /// assert_eq!(worlds.action_space().sizes(), [3, 2, 2, 2, 2]);
+    /// # Ok::<(), hasard_envs::EnvError>(())
+    /// ```
+    pub fn mixed(
+        mixture: Mixture,
+        options: VecOptions,
+        mut make: impl FnMut(usize, usize) -> Result<Box<dyn Environment>, EnvError>,
+    ) -> Result<VecEnv, EnvError> {
+        let mut worlds = VecEnv::from_fn(options, |lane| {
+            let task = mixture.task_of(options.first_lane.wrapping_add(lane as u64));
+            Ok(mixture.lane(task, make(task, lane)?))
+        })?;
+        worlds.mixture = Some(mixture);
+        Ok(worlds)
+    }
+
+    /// The tasks of a mixed batch; none where all lanes have the same.
+    #[must_use]
+    pub fn tasks(&self) -> Vec<MixedTask> {
+        self.mixture.as_ref().map(Mixture::tasks).unwrap_or_default()
+    }
+
+    /// Which of [`VecEnv::tasks`] a lane has; 0 where there is but one.
+    #[must_use]
+    pub fn task_of(&self, lane: usize) -> usize {
+        let number = self.options.first_lane.wrapping_add(lane as u64);
+        self.mixture.as_ref().map_or(0, |mixture| mixture.task_of(number))
     }
 
     /// A batch of any environments; `make` is given the lane's index. All must be alike: the same
@@ -98,6 +145,7 @@ impl VecEnv {
             cost_terms,
             statistics,
             extent,
+            mixture: None,
             options,
             crew: Crew::new(lanes, options)?,
             resting: vec![false; options.lanes],
@@ -331,6 +379,7 @@ impl VecEnv {
         batch.episodes.clear();
         batch.final_lanes.clear();
         batch.final_observations.clear();
+        batch.happenings.clear();
         self.crew.give(slot, batch, task);
     }
 

@@ -1,0 +1,300 @@
+//! Different tasks in one batch: each lane's environment behind the actions, cost terms and
+//! statistics that all of them have together.
+//!
+//! A button that a task does not have does nothing there, a cost term that it does not have costs
+//! nothing, and a statistic that it does not have is 0. So a lane's episodes are those of its task
+//! alone, seed by seed.
+
+use crate::{
+    ActionGroup, ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, Environment, Episode,
+    Happening, Step, episode_costs,
+};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// One of the tasks of a mixed batch.
+#[derive(Clone, PartialEq, Debug)]
+pub struct MixedTask {
+    /// Which environment.
+    pub id: EnvId,
+    /// The map's extent: x from, y from, x to, y to in map units.
+    pub extent: [i32; 4],
+    /// Policy steps of an episode that only time ends.
+    pub episode_steps: u32,
+    /// For each choice of each sub-action of the batch's space, one after the other, whether it
+    /// does something here: to press nothing always does.
+    pub mask: Vec<bool>,
+}
+
+/// What the tasks of a batch have together, and how each sees it.
+#[derive(Clone, Debug)]
+pub struct Mixture {
+    firsts: Vec<Arc<Part>>,
+}
+
+/// A task's way into the batch.
+#[derive(Debug)]
+struct Part {
+    task: MixedTask,
+    space: ActionSpace,
+    terms: &'static [CostTerm],
+    statistics: Vec<&'static str>,
+    /// Of each own sub-action: the batch's sub-action, and the own choice for each choice of it.
+    choices: Vec<(usize, Vec<u8>)>,
+    /// Of each own continuous sub-action: the batch's.
+    deltas: Vec<usize>,
+    /// Of each own cost term and each own statistic: the batch's.
+    own_terms: Vec<usize>,
+    own_statistics: Vec<usize>,
+}
+
+impl Mixture {
+    /// The mixture of some environments, all made with the same options.
+    ///
+    /// # Errors
+    /// Names two tasks that use one name for a cost term that counts in one of them alone.
+    pub fn of(envs: &[Env]) -> Result<Mixture, EnvError> {
+        let space = envs.iter().fold(empty_space(), |space, env| joined(space, env.action_space()));
+        let terms = joined_terms(envs)?;
+        let mut statistics: Vec<&'static str> = Vec::new();
+        for name in envs.iter().flat_map(Environment::stat_names) {
+            if !statistics.contains(&name) {
+                statistics.push(name);
+            }
+        }
+        let part = |env: &Env| {
+            let own = env.action_space();
+            let choices: Vec<_> = own.groups.iter().map(|group| route(&space, group)).collect();
+            let place = |name: &str| statistics.iter().position(|known| *known == name);
+            let task = MixedTask {
+                id: env.id(),
+                extent: env.extent(),
+                episode_steps: env.episode_steps(),
+                mask: mask(&space, own),
+            };
+            Arc::new(Part {
+                task,
+                space: space.clone(),
+                terms,
+                statistics: statistics.clone(),
+                choices,
+                deltas: places(&own.deltas, &space.deltas),
+                own_terms: places(env.cost_terms(), terms),
+                own_statistics: env.stat_names().into_iter().filter_map(place).collect(),
+            })
+        };
+        Ok(Mixture { firsts: envs.iter().map(part).collect() })
+    }
+
+    /// The tasks, in the order given.
+    #[must_use]
+    pub fn tasks(&self) -> Vec<MixedTask> {
+        self.firsts.iter().map(|part| part.task.clone()).collect()
+    }
+
+    /// Which task a lane of this number has: they take turns, so that neither the batch's width
+    /// nor the number of processes changes what a lane plays.
+    #[must_use]
+    pub fn task_of(&self, number: u64) -> usize {
+        (number % self.firsts.len() as u64) as usize
+    }
+
+    /// An environment of a task, as a lane of the mixture.
+    #[must_use]
+    pub fn lane(&self, task: usize, env: Box<dyn Environment>) -> Box<dyn Environment> {
+        let part = Arc::clone(&self.firsts[task]);
+        let (own_actions, own_deltas) = (vec![0; part.choices.len()], vec![0.0; part.deltas.len()]);
+        let costs = vec![0.0; part.terms.len()];
+        Box::new(MixedLane { part, env, own_actions, own_deltas, costs })
+    }
+}
+
+/// The environments of ids joined by commas: one, or those of a mixture.
+pub(super) fn environments(ids: &str, options: &EnvOptions) -> Result<Vec<Env>, EnvError> {
+    ids.split(',').map(|id| Env::new(id.trim(), options)).collect()
+}
+
+const fn empty_space() -> ActionSpace {
+    ActionSpace { groups: Vec::new(), deltas: Vec::new() }
+}
+
+/// A space with the buttons of both: groups that share a button become one, so that buttons that
+/// exclude each other in one of the tasks do so in all.
+fn joined(mut space: ActionSpace, other: &ActionSpace) -> ActionSpace {
+    for group in &other.groups {
+        let shares = |known: &ActionGroup| {
+            known.buttons.iter().any(|(name, _)| group.buttons.iter().any(|(own, _)| own == name))
+        };
+        let place = space.groups.iter().position(&shares).unwrap_or(space.groups.len());
+        let (sharing, apart): (Vec<_>, Vec<_>) = space.groups.into_iter().partition(shares);
+        let mut buttons: Vec<_> = sharing.into_iter().flat_map(|group| group.buttons).collect();
+        for button in &group.buttons {
+            if !buttons.iter().any(|(name, _)| *name == button.0) {
+                buttons.push(*button);
+            }
+        }
+        space.groups = apart;
+        space.groups.insert(place, ActionGroup { buttons });
+    }
+    for delta in &other.deltas {
+        if !space.deltas.contains(delta) {
+            space.deltas.push(*delta);
+        }
+    }
+    space
+}
+
+/// The sub-action of a space that has a group's buttons, and which of the group's choices each of
+/// its choices is.
+fn route(space: &ActionSpace, group: &ActionGroup) -> (usize, Vec<u8>) {
+    let has = |name: &str| group.buttons.iter().position(|(own, _)| *own == name);
+    let place = space
+        .groups
+        .iter()
+        .position(|joined| joined.buttons.iter().any(|(name, _)| has(name).is_some()))
+        .expect("the union has every task's buttons");
+    let own =
+        space.groups[place].buttons.iter().map(|(name, _)| has(name).map_or(0, |i| i as u8 + 1));
+    (place, std::iter::once(0).chain(own).collect())
+}
+
+fn mask(space: &ActionSpace, own: &ActionSpace) -> Vec<bool> {
+    let has =
+        |name: &str| own.groups.iter().flat_map(|group| &group.buttons).any(|(n, _)| *n == name);
+    let group = |group: &ActionGroup| {
+        let buttons: Vec<bool> = group.buttons.iter().map(|(name, _)| has(name)).collect();
+        std::iter::once(true).chain(buttons)
+    };
+    space.groups.iter().flat_map(group).collect()
+}
+
+/// Where each of `these` stands among `all`.
+fn places<T: PartialEq>(these: &[T], all: &[T]) -> Vec<usize> {
+    these
+        .iter()
+        .map(|one| all.iter().position(|other| other == one).expect("the union has every part"))
+        .collect()
+}
+
+fn joined_terms(envs: &[Env]) -> Result<&'static [CostTerm], EnvError> {
+    let mut terms: Vec<CostTerm> = Vec::new();
+    for env in envs {
+        for term in env.cost_terms() {
+            match terms.iter().find(|known| known.name == term.name) {
+                None => terms.push(*term),
+                Some(known) if known.counted == term.counted => {}
+                Some(_) => {
+                    return Err(EnvError::Option {
+                        option: "a mixed batch",
+                        given: format!("the cost term `{}` of {}", term.name, env.id()),
+                        allowed: "a name that counts in all of its tasks or in none".to_string(),
+                    });
+                }
+            }
+        }
+    }
+    Ok(kept(terms))
+}
+
+/// The same terms, for as long as the program runs; each list is kept once.
+fn kept(terms: Vec<CostTerm>) -> &'static [CostTerm] {
+    static KEPT: Mutex<Vec<&'static [CostTerm]>> = Mutex::new(Vec::new());
+    let mut lists = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = lists.iter().find(|known| ***known == *terms) {
+        return known;
+    }
+    let list: &'static [CostTerm] = Box::leak(terms.into_boxed_slice());
+    lists.push(list);
+    list
+}
+
+/// A lane of a mixed batch.
+struct MixedLane {
+    part: Arc<Part>,
+    env: Box<dyn Environment>,
+    own_actions: Vec<u8>,
+    own_deltas: Vec<f32>,
+    costs: Vec<f64>,
+}
+
+impl MixedLane {
+    fn lay_out_costs(&mut self) {
+        self.costs.fill(0.0);
+        for (&place, &cost) in self.part.own_terms.iter().zip(self.env.step_costs()) {
+            self.costs[place] = cost;
+        }
+    }
+}
+
+impl Environment for MixedLane {
+    fn action_space(&self) -> &ActionSpace {
+        &self.part.space
+    }
+
+    fn observation_shape(&self) -> [usize; 3] {
+        self.env.observation_shape()
+    }
+
+    fn cost_terms(&self) -> &'static [CostTerm] {
+        self.part.terms
+    }
+
+    fn reset(&mut self, seed: u64) {
+        self.env.reset(seed);
+        self.costs.fill(0.0);
+    }
+
+    fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
+        for ((place, own), chosen) in self.part.choices.iter().zip(&mut self.own_actions) {
+            *chosen = own[usize::from(actions[*place])];
+        }
+        for (&place, delta) in self.part.deltas.iter().zip(&mut self.own_deltas) {
+            *delta = deltas[place];
+        }
+        let step = self.env.step(&self.own_actions, &self.own_deltas);
+        self.lay_out_costs();
+        step
+    }
+
+    fn step_costs(&self) -> &[f64] {
+        &self.costs
+    }
+
+    fn observe(&mut self, out: &mut [u8]) {
+        self.env.observe(out);
+    }
+
+    fn position(&self) -> [i32; 2] {
+        self.env.position()
+    }
+
+    /// None: the places of different maps have no extent together.
+    fn extent(&self) -> Option<[i32; 4]> {
+        None
+    }
+
+    fn stats(&self, stats: &mut Vec<(&'static str, f64)>) {
+        let begin = stats.len();
+        stats.extend(self.part.statistics.iter().map(|name| (*name, 0.0)));
+        let end = stats.len();
+        self.env.stats(stats);
+        for (index, &place) in self.part.own_statistics.iter().enumerate() {
+            stats[begin + place].1 = stats[end + index].1;
+        }
+        stats.truncate(end);
+    }
+
+    fn happenings(&self) -> &[Happening] {
+        self.env.happenings()
+    }
+
+    fn episode(&self) -> Episode {
+        let own = self.env.episode();
+        let mut sums = vec![0.0; self.part.terms.len()];
+        for (&place, cost) in self.part.own_terms.iter().zip(&own.costs) {
+            sums[place] = cost.cost;
+        }
+        let mut stats = Vec::new();
+        self.stats(&mut stats);
+        Episode { costs: episode_costs(self.part.terms, &sums), stats, ..own }
+    }
+}
