@@ -352,7 +352,7 @@ pub struct TraceArgs {
 /// `hasard bench`.
 #[derive(Args, Debug)]
 pub struct BenchArgs {
-    /// Environment id
+    /// Environment id; several, with commas between, are measured in one mixed batch
     #[arg(value_parser = env_id)]
     pub env: String,
     /// Environments in the batch

@@ -49,11 +49,16 @@ pub fn positive(text: &str) -> Result<u64, String> {
 
 /// An environment's id as people write it: any case, without `-v0`, with Python's `hasard/`; or a
 /// scenario's file, `my_task.toml` or `my_task.toml#2`, which is read and known by its id from then
-/// on. Other texts stay as they are; what makes the environment names the nearest id.
+/// on; or several of them with commas between, a mixed batch. Other texts stay as they are; what makes the environment names the nearest id.
 ///
 /// # Errors
 /// What is wrong with a scenario's file.
 pub fn env_id(text: &str) -> Result<String, String> {
+    if text.contains(',') && !std::path::Path::new(text).exists() {
+        let ids: Result<Vec<String>, String> =
+            text.split(',').map(|id| env_id(id.trim())).collect();
+        return Ok(ids?.join(","));
+    }
     if hasard_envs::own::is_file(text) {
         return hasard_envs::own::open(text)
             .map(|id| id.to_string())

@@ -96,3 +96,16 @@ fn bad_files_are_refused_in_a_line_and_checked_in_full() {
     assert!(folder.refused("play large.toml").contains("256 KiB"));
     assert!(folder.refused("record . -o x.gif").len() < 300);
 }
+
+/// Several tasks make one batch for `bench`; what plays one environment says so.
+#[test]
+fn several_tasks_make_a_batch() {
+    let folder = Folder::new("several-tasks");
+    folder.ok("new garden");
+    let line = folder.ok("bench RemedyRushLevel1,garden.toml --envs 4 --seconds 0.1 --size 64x48");
+    assert!(line.starts_with("RemedyRushLevel1-v0,Garden-v0: "), "{line}");
+    for line in ["rollout", "train", "render"] {
+        let error = folder.refused(&format!("{line} RemedyRushLevel1,garden.toml"));
+        assert!(error.contains("it must be one id"), "{line}: {error}");
+    }
+}

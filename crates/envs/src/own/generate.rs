@@ -119,7 +119,8 @@ impl Layout {
         open
     }
 
-    /// Walls that part the ground again and again, each with a door.
+    /// Walls that part the ground again and again, each with doors. Where a wall that comes later
+    /// closes one, [`Layout::join`] opens another.
     fn rooms(&self, rng: &mut Rng) -> Vec<bool> {
         let mut open = vec![true; self.columns * self.rows];
         let mut parts = vec![[0, 0, self.columns, self.rows]];
@@ -133,10 +134,11 @@ impl Layout {
             }
             let wall = least + rng.below((length - 2 * least) as u32) as usize;
             let side = if across { high } else { wide };
-            // Never where a door of a wall that it meets would be closed: doors are at even places
-            // of a wall at odd ones, or found open.
-            let door = rng.below(side as u32) as usize;
-            for step in (0..side).filter(|step| *step != door) {
+            // One to three doors: with one alone small maps would repeat after some ten thousand.
+            let mut doors = [usize::MAX; 3];
+            let count = 1 + rng.below(3) as usize;
+            doors[..count].fill_with(|| rng.below(side as u32) as usize);
+            for step in (0..side).filter(|step| !doors.contains(step)) {
                 let (column, row) =
                     if across { (west + wall, south + step) } else { (west + step, south + wall) };
                 open[self.at(column, row)] = false;

@@ -278,6 +278,15 @@ impl std::str::FromStr for EnvId {
     type Err = EnvError;
 
     fn from_str(text: &str) -> Result<EnvId, EnvError> {
+        if text.contains(',') {
+            return Err(EnvError::Option {
+                option: "an environment",
+                given: crate::error::excerpt(text),
+                allowed:
+                    "one id; several make a batch, of `hasard bench` and of make_vec in Python"
+                        .to_string(),
+            });
+        }
         let all: Vec<EnvId> = EnvId::every().collect();
         all.iter().copied().find(|id| id.to_string() == text).ok_or_else(|| {
             // Ids are short and few: the plain edit distance over upper-cased text is quick enough
