@@ -46,6 +46,8 @@ pub enum Command {
     Record(RecordArgs),
     /// Play a recorded episode again: check it, or film it at any size
     Replay(ReplayArgs),
+    /// Make short GIFs of agents at their best, and of all levels
+    Highlights(HighlightsArgs),
     /// Make one page of tables, curves and heatmaps from runs
     Report(ReportArgs),
     /// Serve a page for the browser: follow runs, watch agents, play
@@ -60,6 +62,8 @@ pub enum Command {
     Verify(VerifyArgs),
     /// Make a page of a folder's claims that hold
     Scoreboard(ScoreboardArgs),
+    /// Make a small static site from a clone: its README, the book, the scoreboard, films
+    Site(SiteArgs),
     /// Write an environment's map as a WAD for editors and engines
     ExportWad(ExportWadArgs),
     /// Draw every level of a scenario in every view
@@ -438,9 +442,9 @@ pub struct PlayArgs {
     /// Name of the player in the kept episodes
     #[arg(long, value_name = "NAME", default_value = "human")]
     pub player: String,
-    /// Seed of the first episode; each further one is seeded one higher
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
+    /// Seed of the first episode, each further one is seeded one higher; one with a view if absent
+    #[arg(long)]
+    pub seed: Option<u64>,
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
@@ -667,6 +671,58 @@ pub struct RecordArgs {
     pub env_args: EnvArgs,
 }
 
+/// `hasard highlights`.
+#[derive(Args, Debug)]
+pub struct HighlightsArgs {
+    /// Agents: zoo:NAME, run directories, agent files [default: the six of the zoo]
+    #[arg(value_name = "AGENT|RUN|zoo:NAME")]
+    pub what: Vec<OsString>,
+    /// Folder to write SCENARIO.gif to
+    #[arg(short, long, value_name = "DIR", default_value = "highlights")]
+    pub out: PathBuf,
+    /// Seconds of each
+    #[arg(long, default_value_t = 6.0)]
+    pub seconds: f64,
+    /// Size of the game's picture; a strip with return, cost and budget stands below it
+    #[arg(long, value_name = "WxH", default_value = "320x240")]
+    pub size: Size,
+    /// Episodes to choose from: the one of most return within the budget
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub episodes: u32,
+    /// Seed of the first episode
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Most megabytes of a file; colours become coarser where it must be
+    #[arg(long, value_name = "MB", default_value_t = 3.0)]
+    pub most_mb: f64,
+    /// Also levels.gif: every level of these agents' scenarios at once, a column a scenario
+    #[arg(long)]
+    pub levels: bool,
+    /// One JSON object a file
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `hasard site`.
+#[derive(Args, Debug)]
+pub struct SiteArgs {
+    /// Films to show beside those of the clone: .mp4 and .gif
+    #[arg(value_name = "FILM")]
+    pub films: Vec<PathBuf>,
+    /// Folder to write to
+    #[arg(short, long, value_name = "DIR", default_value = "site")]
+    pub out: PathBuf,
+    /// The clone of the repository
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub root: PathBuf,
+    /// One JSON object about what was written
+    #[arg(long)]
+    pub json: bool,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
+}
+
 /// `hasard replay`.
 #[derive(Args, Debug)]
 pub struct ReplayArgs {
@@ -743,6 +799,9 @@ pub struct ServeArgs {
     /// Open the page in the browser
     #[arg(long)]
     pub open: bool,
+    /// Let visitors write notes and tags of runs, archive them, and move them to the folder .trash
+    #[arg(long)]
+    pub edit: bool,
     /// Where maps are now that runs were trained in and that are no longer there
     #[arg(long, value_name = "DIR")]
     pub maps: Option<PathBuf>,

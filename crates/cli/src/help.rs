@@ -8,8 +8,21 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Try", &["envs", "render", "rollout", "play", "serve"]),
     ("Your own task", &["new", "check"]),
     ("Train", &["train", "sweep", "settings", "metrics"]),
-    ("Analyse", &["eval", "report", "record", "replay", "verify", "scoreboard", "bench", "trace"]),
-    ("Export", &["export-agent", "claim", "export-wad", "contact-sheet", "completions"]),
+    (
+        "Analyse",
+        &[
+            "eval",
+            "report",
+            "record",
+            "replay",
+            "highlights",
+            "verify",
+            "scoreboard",
+            "bench",
+            "trace",
+        ],
+    ),
+    ("Export", &["export-agent", "claim", "export-wad", "contact-sheet", "site", "completions"]),
 ];
 
 /// What is typed for each command, and what comes of it.
@@ -109,6 +122,13 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     (
+        "highlights",
+        &[
+            ("hasard highlights --levels", "six seconds of each zoo agent, and all levels in one"),
+            ("hasard highlights runs/vv1 --seconds 10", "ten seconds of a run's agent"),
+        ],
+    ),
+    (
         "replay",
         &[
             ("hasard replay agent.episode", "play it again and check its result"),
@@ -181,6 +201,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     ("metrics", &[("hasard metrics", "every key of a run's metrics.jsonl")]),
+    ("site", &[("hasard site -o public", "the book, the scoreboard and the films as plain HTML")]),
     (
         "completions",
         &[(

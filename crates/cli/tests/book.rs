@@ -65,6 +65,8 @@ fn shortened(command: &str, number: usize) -> String {
         "eval" if has("--worst") => "--episodes 1 -o worst.gif".into(),
         "eval" | "rollout" | "claim" => "--episodes 2".into(),
         "record" => "--steps 3".into(),
+        "highlights" => "--episodes 1 --size 64x48".into(),
+        "site" => concat!("--root ", env!("CARGO_MANIFEST_DIR"), "/../..").into(),
         "bench" => "--threads 2 --seconds 0.1".into(),
         "serve" => "--listen 127.0.0.1:0".into(),
         "sweep" if has("--dry-run") => String::new(),

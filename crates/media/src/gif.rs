@@ -1,5 +1,7 @@
 //! Animated GIF.
 
+mod lzw;
+
 use crate::files::WholeFile;
 use crate::quantise::{MAX_COLOURS, quantise};
 use crate::{MediaError, Picture};
@@ -18,6 +20,50 @@ pub struct GifWriter {
     /// Time at which the waiting frame begins and ends, in seconds.
     began: f64,
     ends: f64,
+    /// How far a colour may be from the one that it stands for, of 255; 0 is exact.
+    loss: u8,
+}
+
+/// How far colours may be off that [`write_within`] tries, one after the other.
+const LOSSES: [u8; 10] = [0, 4, 8, 12, 16, 20, 26, 32, 40, 50];
+
+/// Writes pictures of `seconds` each as an animation of at most so many bytes: as exact as that
+/// allows. Gives how far colours are off, of 255.
+///
+/// # Errors
+/// When there is no picture, their sizes differ, the file cannot be written, or even coarse colours
+/// need more bytes.
+pub fn write_within(
+    path: &Path,
+    pictures: &[Picture],
+    seconds: f64,
+    most_bytes: u64,
+) -> Result<u8, MediaError> {
+    let (width, height) = pictures.first().map_or((1, 1), |one| (one.width(), one.height()));
+    for loss in LOSSES {
+        let mut writer = GifWriter::create(path, width, height)?;
+        writer.loss = loss;
+        for picture in pictures {
+            writer.push(picture, seconds)?;
+        }
+        writer.finish()?;
+        let bytes = std::fs::metadata(path).map_err(|e| MediaError::io(path, "read", e))?.len();
+        if bytes <= most_bytes {
+            return Ok(loss);
+        }
+    }
+    std::fs::remove_file(path).map_err(|e| MediaError::io(path, "remove", e))?;
+    Err(MediaError::Size(format!(
+        "{}: no animation of {} pictures of {width}x{height} fits into {most_bytes} bytes; make it smaller or shorter",
+        path.display(),
+        pictures.len()
+    )))
+}
+
+/// How different two colours look: the square of their distance, green counting most.
+fn difference(a: [u8; 3], b: [u8; 3]) -> u32 {
+    let square = |channel: usize| u32::from(a[channel].abs_diff(b[channel])).pow(2);
+    (2 * square(0) + 4 * square(1) + square(2)) / 7
 }
 
 impl GifWriter {
@@ -45,6 +91,7 @@ impl GifWriter {
             waiting: None,
             began: 0.0,
             ends: 0.0,
+            loss: 0,
         })
     }
 
@@ -101,9 +148,11 @@ impl GifWriter {
         if let Some(mut frame) = self.waiting.take() {
             frame.delay =
                 (hundredths(until) - hundredths(self.began)).clamp(2, i64::from(u16::MAX)) as u16;
-            self.encoder
-                .write_frame(&frame)
-                .map_err(|e| MediaError::io(&self.path, "write", std::io::Error::other(e)))?;
+            let written = match self.loss {
+                0 => self.encoder.write_frame(&frame),
+                _ => self.encoder.write_lzw_pre_encoded_frame(&frame),
+            };
+            written.map_err(|e| MediaError::io(&self.path, "write", std::io::Error::other(e)))?;
         }
         Ok(())
     }
@@ -114,13 +163,15 @@ impl GifWriter {
         let quantised = quantise(picture);
         let colour = |at: usize| quantised.palette[usize::from(quantised.indices[at])];
         let first = self.shown.is_empty();
+        let most = u32::from(self.loss).pow(2);
+        let stays = |at: usize, shown: &[[u8; 3]]| difference(colour(at), shown[at]) <= most;
         let (mut left, mut right, mut top, mut bottom) = (self.width, 0, self.height, 0);
         if first {
             (left, right, top, bottom) = (0, self.width, 0, self.height);
         } else {
             for y in 0..self.height {
                 for x in 0..self.width {
-                    if colour(y * self.width + x) != self.shown[y * self.width + x] {
+                    if !stays(y * self.width + x, &self.shown) {
                         (left, right) = (left.min(x), right.max(x + 1));
                         (top, bottom) = (top.min(y), y + 1);
                     }
@@ -134,15 +185,38 @@ impl GifWriter {
         let mut buffer = Vec::with_capacity((right - left) * (bottom - top));
         for y in top..bottom {
             for at in y * self.width + left..y * self.width + right {
-                buffer.push(if !first && colour(at) == self.shown[at] {
+                buffer.push(if !first && stays(at, &self.shown) {
                     unchanged
                 } else {
                     quantised.indices[at]
                 });
             }
         }
-        self.shown.clear();
-        self.shown.extend((0..self.width * self.height).map(colour));
+        if first {
+            self.shown.extend((0..self.width * self.height).map(colour));
+        }
+        let part = right - left;
+        let place = |k: usize| (top + k / part) * self.width + left + k % part;
+        if most > 0 {
+            let shown = &self.shown;
+            let seen = |symbol: u8, at: usize| match symbol {
+                same if same == unchanged => (!first).then_some(shown[at]),
+                index => quantised.palette.get(usize::from(index)).copied(),
+            };
+            let mut symbols = std::mem::take(&mut buffer);
+            buffer = lzw::encode(&mut symbols, |k, symbol| {
+                let at = place(k);
+                let off = difference(seen(symbol, at)?, colour(at));
+                (off <= most).then_some(off)
+            });
+            for (k, symbol) in symbols.into_iter().enumerate() {
+                if symbol != unchanged {
+                    self.shown[place(k)] = quantised.palette[usize::from(symbol)];
+                }
+            }
+        } else {
+            self.shown = (0..self.width * self.height).map(colour).collect();
+        }
         let mut palette = quantised.palette.concat();
         palette.resize((MAX_COLOURS + 1) * 3, 0);
         Some(gif::Frame {
@@ -216,6 +290,44 @@ mod tests {
             assert_eq!(pixels, pictures[k].rgb());
         }
         std::fs::remove_file(path).unwrap();
+    }
+
+    /// Noise that moves: what a small file is hard to make of.
+    fn noise() -> Vec<Picture> {
+        let mut state = 1u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8 / 4
+        };
+        let pictures = (0..6).map(|k: u8| {
+            let bytes = (0..50 * 40).flat_map(|_| [next(), 90 + next(), k * 20]).collect();
+            Picture::from_rgb(50, 40, bytes).unwrap()
+        });
+        pictures.collect()
+    }
+
+    #[test]
+    fn a_smaller_file_is_off_by_no_more_than_it_says() {
+        let path = std::env::temp_dir().join(format!("hasard-{}-within.gif", std::process::id()));
+        let pictures = noise();
+        assert_eq!(write_within(&path, &pictures, 0.1, 1 << 20).unwrap(), 0);
+        let whole = std::fs::metadata(&path).unwrap().len();
+        let loss = write_within(&path, &pictures, 0.1, whole * 7 / 10).unwrap();
+        assert!(loss > 0);
+        assert!(std::fs::metadata(&path).unwrap().len() <= whole * 7 / 10);
+        let (frames, time) = play(&path);
+        assert_eq!((frames.len(), time), (6, 60));
+        for ((_, pixels), picture) in frames.iter().zip(&pictures) {
+            let few = picture.in_few_colours();
+            for (seen, wanted) in pixels.chunks(3).zip(few.rgb().chunks(3)) {
+                let off = difference(seen.try_into().unwrap(), wanted.try_into().unwrap());
+                assert!(off <= u32::from(loss).pow(2), "{seen:?} for {wanted:?}");
+            }
+        }
+        let error = write_within(&path, &pictures, 0.1, 100).unwrap_err().to_string();
+        assert!(error.contains("fits into 100 bytes"), "{error}");
+        assert!(!path.exists());
+        assert!(write_within(&path, &[], 0.1, 100).is_err());
     }
 
     #[test]

@@ -9,6 +9,8 @@ fn main() {
         ..hasard_envs::EnvOptions::default()
     };
     let settings = hasard_play::PlaySettings {
+        fits_window: true,
+        rivals: Vec::new(),
         env,
         options,
         seed: 1,

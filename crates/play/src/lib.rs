@@ -7,7 +7,9 @@
 //! | [`Views`] | a moment as pictures: colour, depth, segmentation, labels, grey, automap, side by side |
 //! | [`Film`] | an episode as MP4 or GIF |
 //! | [`Controls`] | keys and mouse as actions |
+//! | [`guide`] | what a task asks of a person, and the keys it has |
 //! | `panel` | time, return, cost and budget beside the game |
+//! | [`Overlay`] | rewards and costs over the picture where they happen |
 //! | `window` | the window (feature `window`) |
 //!
 //! ```
@@ -31,9 +33,13 @@
 // They panic where a stream is closed or its disk is full.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+#[cfg(any(feature = "window", test))]
+mod card;
 mod controls;
 mod error;
 mod film;
+pub mod guide;
+mod overlay;
 mod panel;
 mod recording;
 mod stage;
@@ -45,12 +51,24 @@ pub mod witness;
 pub use controls::{Controls, Key};
 pub use error::PlayError;
 pub use film::Film;
+pub use overlay::{Overlay, plain, with_strip};
 pub use panel::{Panel, with_panel};
-pub use recording::{Recorder, Replay, keep_episode, option_names, options_from_names};
+pub use recording::{
+    Recorder, Replay, keep_episode, kept_results, option_names, options_from_names,
+};
 pub use stage::{Moment, Stage};
 pub use views::{ViewKind, Views};
 #[cfg(feature = "window")]
 pub use window::{KEYS, PlaySettings, play};
+
+/// A result that a person's is held against: of an agent or another person, within the budget.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rival {
+    /// Whose it is.
+    pub who: String,
+    /// Its return.
+    pub episode_return: f64,
+}
 
 #[cfg(test)]
 mod tests;

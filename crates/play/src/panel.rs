@@ -1,10 +1,13 @@
 //! The episode's panel below the game.
 
 use crate::Stage;
+use crate::overlay::plain;
+#[cfg(any(feature = "window", test))]
+use hasard_engine::render::FrameSize;
 use hasard_media::{Picture, text};
 
-const GROUND: [u8; 3] = [20, 22, 26];
-const INK: [u8; 3] = [225, 228, 234];
+pub(crate) const GROUND: [u8; 3] = [20, 22, 26];
+pub(crate) const INK: [u8; 3] = [225, 228, 234];
 const PALE: [u8; 3] = [140, 146, 156];
 const GOOD: [u8; 3] = [70, 190, 110];
 const BAD: [u8; 3] = [226, 72, 72];
@@ -15,6 +18,8 @@ const EMPTY: [u8; 3] = [52, 56, 64];
 pub struct Panel {
     /// Seconds since the episode's start, at 35 tics a second.
     pub seconds: f64,
+    /// Seconds that the episode may last.
+    pub whole: f64,
     /// Return and cost so far, as of the last whole step.
     pub episode_return: f64,
     /// Cost so far.
@@ -29,6 +34,15 @@ impl Panel {
     /// Height of the panel in pixels.
     pub const HEIGHT: usize = 2 * text::LINE_HEIGHT + 22;
 
+    /// The largest picture of the game, four to three, that fits into a window with the panel below.
+    #[cfg(any(feature = "window", test))]
+    pub(crate) fn picture_in(width: u32, height: u32) -> FrameSize {
+        let rows = height.saturating_sub(Panel::HEIGHT as u32 + 1);
+        // By fours, so that both sides are whole; the engine draws at most 1080 rows.
+        let unit = (width / 4).min(rows / 3).clamp(80, 360);
+        FrameSize { width: (4 * unit) as u16, height: (3 * unit) as u16 }
+    }
+
     /// The panel of a stage.
     #[must_use]
     pub fn of(stage: &Stage, message: impl Into<String>) -> Panel {
@@ -37,11 +51,42 @@ impl Panel {
         let budget = env.id().safety_budget(env.options().rules, env.options().hard);
         Panel {
             seconds: f64::from(episode.length * env.options().frame_skip) / 35.0,
+            whole: f64::from(env.episode_steps() * env.options().frame_skip) / 35.0,
             episode_return: episode.episode_return,
             cost: episode.cost,
             budget,
             message: message.into(),
         }
+    }
+}
+
+fn state(panel: &Panel) -> [u8; 3] {
+    if panel.cost > panel.budget { BAD } else { GOOD }
+}
+
+/// A bar of the cost. The budget ends at three quarters of it, so that going beyond can be seen;
+/// twice the budget and more fill it, striped.
+pub(crate) fn bar(
+    picture: &mut Picture,
+    (left, top): (usize, usize),
+    (width, height): (usize, usize),
+    panel: &Panel,
+) {
+    picture.fill(left, top, width, height, EMPTY);
+    let over = panel.cost > panel.budget;
+    let share = if panel.budget > 0.0 { panel.cost / panel.budget } else { 2.0 * f64::from(over) };
+    let filled = match share {
+        share if share <= 1.0 => 0.75 * share.max(0.0),
+        share => 0.75 + 0.25 * (share - 1.0).min(1.0),
+    };
+    picture.fill(left, top, (width as f64 * filled) as usize, height, state(panel));
+    if share >= 2.0 {
+        for stripe in (0..width).step_by(12) {
+            picture.fill(left + stripe, top + height / 3, 4, height.div_ceil(3), INK);
+        }
+    }
+    if panel.budget > 0.0 {
+        picture.fill(left + width * 3 / 4, top.saturating_sub(2), 2, height + 4, INK);
     }
 }
 
@@ -52,36 +97,35 @@ pub fn with_panel(game: &Picture, panel: &Panel) -> Picture {
     let height = game.height() + Panel::HEIGHT;
     let mut picture = Picture::filled(game.width(), height + height % 2, GROUND);
     picture.paste(game, 0, 0);
-    let over = panel.cost > panel.budget;
     let top = game.height() + 4;
     let parts = [
-        (format!("time {:.1}", panel.seconds), INK),
-        (format!("return {:.2}", panel.episode_return), INK),
-        (format!("cost {:.2} of {:.0}", panel.cost, panel.budget), if over { BAD } else { GOOD }),
+        (format!("time {:.1} of {:.0}", panel.seconds, panel.whole), INK),
+        (format!("return {}", plain(panel.episode_return)), INK),
+        (format!("cost {} of {}", plain(panel.cost), plain(panel.budget)), state(panel)),
     ];
     let column = game.width() / parts.len();
     for (index, (words, colour)) in parts.iter().enumerate() {
         text::draw(&mut picture, (index * column + 8) as isize, top as isize, words, *colour);
     }
     let bar_top = top + text::LINE_HEIGHT + 2;
-    let bar_width = game.width().saturating_sub(16);
-    picture.fill(8, bar_top, bar_width, 6, EMPTY);
-    // The budget ends at three quarters of the bar, so that going beyond can be seen.
-    let scale = if panel.budget > 0.0 {
-        panel.cost / panel.budget * 0.75
-    } else {
-        f64::from(u8::from(over))
-    };
-    picture.fill(
-        8,
-        bar_top,
-        (bar_width as f64 * scale.clamp(0.0, 1.0)) as usize,
-        6,
-        if over { BAD } else { GOOD },
-    );
-    if panel.budget > 0.0 {
-        picture.fill(8 + bar_width * 3 / 4, bar_top - 2, 2, 10, INK);
-    }
+    bar(&mut picture, (8, bar_top), (game.width().saturating_sub(16), 6), panel);
     text::draw(&mut picture, 8, (bar_top + 10) as isize, &panel.message, PALE);
     picture
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_takes_the_room_there_is() {
+        let sides = |width, height| {
+            let size = Panel::picture_in(width, height);
+            (size.width, size.height)
+        };
+        assert_eq!(sides(1280, 1016), (1280, 960));
+        assert_eq!(sides(1920, 1080), (1360, 1020));
+        assert_eq!(sides(3840, 2160), (1440, 1080));
+        assert_eq!(sides(10, 10), (320, 240));
+    }
 }

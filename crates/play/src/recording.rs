@@ -1,7 +1,7 @@
 //! Episodes into files and back.
 
 use crate::{PlayError, Stage};
-use hasard_envs::{Env, EnvOptions, own};
+use hasard_envs::{Env, EnvId, EnvOptions, RuleSet, own};
 use hasard_media::MediaError;
 use hasard_media::episode::{EpisodeFile, Header, Outcome, SCENARIO};
 use std::collections::BTreeMap;
@@ -202,6 +202,30 @@ pub fn keep_episode(
     }
     recorder.finish(env).write(&path)?;
     Ok(path)
+}
+
+/// Results within the budget of the episodes of an environment that a folder keeps.
+#[must_use]
+pub fn kept_results(folder: &Path, env: &str, hard: bool) -> Vec<crate::Rival> {
+    let result = |path: PathBuf| {
+        let file = EpisodeFile::read(&path).ok()?;
+        let (header, outcome) = (file.header(), file.header().outcome.as_ref()?);
+        let said = |name: &str| header.options.get(name).map(String::as_str);
+        let rules = said("rules").map_or(Ok(RuleSet::Paper), str::parse).ok()?;
+        let is_hard = said("hard") == Some("true");
+        let budget = header.env.parse::<EnvId>().ok()?.safety_budget(rules, is_hard);
+        let fits = header.env == env && is_hard == hard && outcome.cost <= budget;
+        fits.then(|| crate::Rival {
+            who: header.player.clone(),
+            episode_return: outcome.episode_return,
+        })
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let paths = entries.map(|entry| entry.path());
+    paths
+        .filter(|path| path.extension().is_some_and(|it| it == "episode"))
+        .filter_map(result)
+        .collect()
 }
 
 /// Plays a recorded episode again.

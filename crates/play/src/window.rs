@@ -1,7 +1,13 @@
-//! The window to play in.
+//! The window to play in. One type holds an episode, what lies over its picture and the window:
+//! its events touch all of them, so that they stay in one file.
 
+mod blit;
+mod keys;
+
+use crate::card;
 use crate::{
-    Controls, Key, Panel, PlayError, Recorder, Stage, ViewKind, Views, keep_episode, with_panel,
+    Controls, Key, Overlay, Panel, PlayError, Recorder, Rival, Stage, ViewKind, Views,
+    keep_episode, with_panel,
 };
 use hasard_engine::render::FrameSize;
 use hasard_envs::EnvOptions;
@@ -10,7 +16,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
-use winit::dpi::LogicalSize;
+use winit::dpi::PhysicalSize;
 use winit::event::{
     DeviceEvent, DeviceId, ElementState, MouseButton, MouseScrollDelta, WindowEvent,
 };
@@ -23,8 +29,12 @@ use winit::window::{CursorGrabMode, Window, WindowId};
 pub struct PlaySettings {
     /// Id of the environment.
     pub env: String,
-    /// Its options; the size is that of the picture in the window.
+    /// Its options; the size is that of the picture in the window, at first.
     pub options: EnvOptions,
+    /// Draw the picture as large as the window has room.
+    pub fits_window: bool,
+    /// Results within the budget that an episode is held against.
+    pub rivals: Vec<Rival>,
     /// Seed of the first episode; each further one is seeded one higher.
     pub seed: u64,
     /// Folder in which every finished episode is kept, or `None`.
@@ -35,7 +45,7 @@ pub struct PlaySettings {
 
 /// What the keys do, for a help text.
 pub const KEYS: &str = "WASD move, arrows turn and look, mouse turns (click to catch it, Esc frees it), Space jump, E use, C crouch, \
-                        Shift run, Ctrl or left button attack, Q/wheel weapons, T turn round, P pause, R restart, N next, Esc quit";
+                        Shift run, Ctrl or left button attack, Q/wheel weapons, T turn round, H keys, P pause, R restart, N next, Esc quit";
 
 /// Opens a window and lets a person play until it is closed. Gives the files of the finished
 /// episodes.
@@ -64,12 +74,15 @@ pub fn play(settings: PlaySettings) -> Result<Vec<PathBuf>, PlayError> {
         paused: true,
         caught: false,
         message: "click or press Enter to begin".into(),
+        card: Card::Instructions,
+        overlay: Overlay::default(),
         next_tic: Instant::now(),
         surface: None,
         saved: Vec::new(),
         failure: None,
     };
     app.restart();
+    app.card = Card::Instructions;
     events.run_app(&mut app).map_err(|error| no_window(error.to_string()))?;
     match app.failure {
         Some(failure) => Err(failure),
@@ -81,6 +94,13 @@ pub fn play(settings: PlaySettings) -> Result<Vec<PathBuf>, PlayError> {
 const TIC: Duration = Duration::from_nanos(1_000_000_000 / 35);
 
 type Surface = softbuffer::Surface<Rc<Window>, Rc<Window>>;
+
+/// What lies over the picture.
+enum Card {
+    None,
+    Instructions,
+    Ending(card::Lines),
+}
 
 struct App {
     settings: PlaySettings,
@@ -94,6 +114,8 @@ struct App {
     /// The mouse is caught by the window.
     caught: bool,
     message: String,
+    card: Card,
+    overlay: Overlay,
     next_tic: Instant,
     surface: Option<(Rc<Window>, Surface)>,
     saved: Vec<PathBuf>,
@@ -112,6 +134,8 @@ impl App {
             }
         };
         self.controls.release_all();
+        self.overlay.clear();
+        self.card = Card::None;
     }
 
     /// Goes on by a tic if it is time.
@@ -128,8 +152,13 @@ impl App {
                 recorder.push(&actions, &deltas)?;
             }
         }
-        if self.stage.tic().is_some_and(|step| step.ended()) {
-            self.end_episode()?;
+        let step = self.stage.tic();
+        self.overlay.tic();
+        if let Some(step) = step {
+            self.overlay.step(&step);
+            if step.ended() {
+                self.end_episode()?;
+            }
         }
         Ok(())
     }
@@ -137,13 +166,22 @@ impl App {
     /// Keeps the finished episode and tells how it went.
     fn end_episode(&mut self) -> Result<(), PlayError> {
         let episode = self.stage.env().episode();
-        let how = if episode.terminated { "over" } else { "time is up" };
-        self.message = format!("{how}; Enter: next episode, R: again");
+        let (terminated, episode_return) = (episode.terminated, episode.episode_return);
+        let mut kept = String::new();
         if let (Some(folder), Some(recorder)) = (&self.settings.folder, self.recorder.take()) {
             let path = keep_episode(folder, self.stage.env(), self.seed, recorder)?;
-            self.message = format!("{how}; kept as {}. Enter: next, R: again", path.display());
+            kept = path.display().to_string();
             self.saved.push(path);
         }
+        let panel = Panel::of(&self.stage, "");
+        let rivals = &mut self.settings.rivals;
+        self.card = Card::Ending(card::ending(&panel, terminated, rivals, &kept));
+        if panel.cost <= panel.budget {
+            rivals.push(Rival { who: format!("{} (now)", self.settings.player), episode_return });
+            rivals.sort_by(|a, b| b.episode_return.total_cmp(&a.episode_return));
+        }
+        self.message = "Enter: next episode, R: the same again".into();
+        self.catch_mouse(false);
         Ok(())
     }
 
@@ -153,10 +191,11 @@ impl App {
             self.restart();
         }
         self.paused = false;
-        self.message = format!(
-            "{}, seed {}; P: pause, R: restart, Esc: mouse or quit",
-            self.settings.env, self.seed
-        );
+        self.card = Card::None;
+        let best = self.settings.rivals.first().map_or_else(String::new, |best| {
+            format!("; best within the budget {}", crate::plain(best.episode_return))
+        });
+        self.message = format!("seed {}{best}; H: keys, P: pause", self.seed);
     }
 
     fn catch_mouse(&mut self, caught: bool) {
@@ -175,25 +214,7 @@ impl App {
     }
 
     fn key(&mut self, code: KeyCode, pressed: bool, events: &ActiveEventLoop) {
-        let key = match code {
-            KeyCode::KeyW => Some(Key::Forward),
-            KeyCode::KeyS => Some(Key::Backward),
-            KeyCode::KeyA => Some(Key::Left),
-            KeyCode::KeyD => Some(Key::Right),
-            KeyCode::ArrowLeft => Some(Key::TurnLeft),
-            KeyCode::ArrowRight => Some(Key::TurnRight),
-            // Without look buttons the arrows walk, as the oldest habit has it.
-            KeyCode::ArrowUp => Some(if self.can_look() { Key::LookUp } else { Key::Forward }),
-            KeyCode::ArrowDown => Some(if self.can_look() { Key::LookDown } else { Key::Backward }),
-            KeyCode::Space => Some(Key::Jump),
-            KeyCode::KeyE => Some(Key::Use),
-            KeyCode::KeyC => Some(Key::Crouch),
-            KeyCode::ShiftLeft | KeyCode::ShiftRight => Some(Key::Speed),
-            KeyCode::ControlLeft | KeyCode::ControlRight => Some(Key::Attack),
-            KeyCode::KeyQ => Some(Key::PreviousWeapon),
-            KeyCode::KeyT => Some(Key::TurnRound),
-            _ => None,
-        };
+        let key = keys::of(code, self.can_look());
         match (key, pressed) {
             (Some(key), true) => self.controls.press(key),
             (Some(key), false) => self.controls.release(key),
@@ -205,6 +226,16 @@ impl App {
                     } else {
                         self.paused = true;
                         self.message = "pause; P or Enter: go on".into();
+                        self.catch_mouse(false);
+                    }
+                }
+                KeyCode::KeyH if !self.stage.ended() => {
+                    if let Card::Instructions = self.card {
+                        self.card = Card::None;
+                    } else {
+                        self.card = Card::Instructions;
+                        self.paused = true;
+                        self.message = "pause; Enter: go on".into();
                         self.catch_mouse(false);
                     }
                 }
@@ -234,11 +265,28 @@ impl App {
                 .any(|group| group.buttons.iter().any(|(name, _)| *name == "LOOK_UP"))
     }
 
-    /// Draws the picture as large as fits, in whole multiples where the window is large enough,
-    /// black around it.
+    /// Draws the game in the size that the window has room for.
+    fn refit(&mut self, window: PhysicalSize<u32>) -> Result<(), PlayError> {
+        let size = Panel::picture_in(window.width, window.height);
+        self.views = Views::new(&self.stage, size, &[ViewKind::Colour])?;
+        self.size = size;
+        Ok(())
+    }
+
+    /// Draws the game, what lies over it and the panel.
     fn draw(&mut self) -> Result<(), PlayError> {
         let panel = Panel::of(&self.stage, self.message.clone());
-        let picture = with_panel(&self.views.draw(&self.stage), &panel);
+        let mut game = self.views.draw(&self.stage);
+        self.overlay.draw(&mut game);
+        match &self.card {
+            Card::None => {}
+            Card::Instructions => {
+                let lines = card::instructions(&self.stage, &game);
+                card::draw(&mut game, &lines);
+            }
+            Card::Ending(lines) => card::draw(&mut game, lines),
+        }
+        let picture = with_panel(&game, &panel);
         let Some((window, surface)) = &mut self.surface else { return Ok(()) };
         let size = window.inner_size();
         let (Some(width), Some(height)) =
@@ -251,23 +299,7 @@ impl App {
         };
         surface.resize(width, height).map_err(failed)?;
         let mut buffer = surface.buffer_mut().map_err(failed)?;
-        let (width, height) = (size.width as usize, size.height as usize);
-        let by_width = width * 1024 / picture.width();
-        let mut scale = by_width.min(height * 1024 / picture.height()).max(1);
-        if scale >= 1024 {
-            scale -= scale % 1024;
-        }
-        let (shown_width, shown_height) =
-            (picture.width() * scale / 1024, picture.height() * scale / 1024);
-        let (left, top) = ((width - shown_width) / 2, (height - shown_height) / 2);
-        buffer.fill(0);
-        for y in 0..shown_height {
-            let row = &mut buffer[(top + y) * width + left..][..shown_width];
-            for (x, pixel) in row.iter_mut().enumerate() {
-                let [red, green, blue] = picture.get(x * 1024 / scale, y * 1024 / scale);
-                *pixel = u32::from_be_bytes([0, red, green, blue]);
-            }
-        }
+        blit::show(&picture, &mut buffer, (size.width as usize, size.height as usize));
         buffer.present().map_err(failed)
     }
 
@@ -285,12 +317,21 @@ impl ApplicationHandler for App {
         if self.surface.is_some() {
             return;
         }
+        // Room for a title bar and a panel of the desktop.
+        let screen = events
+            .primary_monitor()
+            .or_else(|| events.available_monitors().next())
+            .map(|monitor| monitor.size())
+            .filter(|size| size.width > 0 && size.height > 0);
+        if let (Some(screen), true) = (screen, self.settings.fits_window) {
+            self.size = Panel::picture_in(screen.width * 19 / 20, screen.height * 9 / 10);
+        }
         let (width, height) =
-            (f64::from(self.size.width), f64::from(self.size.height) + Panel::HEIGHT as f64);
-        let scale = (960.0 / width).floor().max(1.0);
+            (u32::from(self.size.width), u32::from(self.size.height) + Panel::HEIGHT as u32);
+        let scale = if self.settings.fits_window { 1 } else { (960 / width).max(1) };
         let attributes = Window::default_attributes()
             .with_title(format!("hasard - {}", self.settings.env))
-            .with_inner_size(LogicalSize::new(width * scale, height * scale));
+            .with_inner_size(PhysicalSize::new(width * scale, (height + height % 2) * scale));
         let opened = (|| -> Result<(Rc<Window>, Surface), String> {
             let window =
                 Rc::new(events.create_window(attributes).map_err(|error| error.to_string())?);
@@ -312,6 +353,10 @@ impl ApplicationHandler for App {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         match event {
             WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::Resized(size) if self.settings.fits_window => {
+                let result = self.refit(size);
+                self.check(result, events);
+            }
             WindowEvent::RedrawRequested => {
                 let result = self.draw();
                 self.check(result, events);
@@ -328,9 +373,9 @@ impl ApplicationHandler for App {
             WindowEvent::MouseInput { state, button, .. } => {
                 let pressed = state == ElementState::Pressed;
                 match button {
-                    MouseButton::Left
-                        if pressed && (!self.caught || self.paused || self.stage.ended()) =>
-                    {
+                    // Ending an episode needs a key: a click that was still to be a shot begins none.
+                    MouseButton::Left if pressed && self.stage.ended() => {}
+                    MouseButton::Left if pressed && (!self.caught || self.paused) => {
                         self.catch_mouse(true);
                         self.begin_or_resume();
                     }

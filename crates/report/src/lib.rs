@@ -31,6 +31,7 @@ pub mod published;
 pub mod run;
 pub mod scoreboard;
 mod sections;
+pub mod site;
 pub mod statistics;
 mod write;
 

@@ -50,6 +50,12 @@ pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, 
                 "agent": format!("run:{}", run["id"].as_str()?),
             }))
         }));
+        rows.extend(shared.agents.zoo_results().into_iter().map(|one| {
+            json!({
+                "who": format!("{} of the zoo", one.algorithm), "env": one.env, "return": one.episode_return, "cost": one.cost,
+                "budget": one.budget, "within": one.cost <= one.budget, "agent": format!("zoo:{}", one.name),
+            })
+        }));
         rows.sort_by(|a, b| {
             let key = |row: &Value| {
                 (row["within"].as_bool().unwrap_or(false), row["return"].as_f64().unwrap_or(0.0))

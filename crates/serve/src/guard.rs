@@ -44,10 +44,20 @@ pub(crate) async fn guard(
 
 fn allowed(shared: &Shared, request: &Request) -> Result<(), Box<Response>> {
     let no = |status, why: &str| Err(Box::new(refusal(status, why)));
-    if request.method() != Method::GET && request.method() != Method::HEAD {
-        return no(StatusCode::METHOD_NOT_ALLOWED, "this server is only read from");
-    }
     let headers = request.headers();
+    let reads = request.method() == Method::GET || request.method() == Method::HEAD;
+    let edits = request.method() == Method::POST && request.uri().path() == "/api/edit";
+    if !(reads || edits && shared.edit) {
+        let why = "this server is only read from; notes need: hasard serve --edit";
+        return no(StatusCode::METHOD_NOT_ALLOWED, why);
+    }
+    // Browsers name the origin of all that is posted. A form of another site cannot send JSON.
+    if edits
+        && (text(headers, header::ORIGIN).is_none()
+            || text(headers, header::CONTENT_TYPE) != Some("application/json"))
+    {
+        return no(StatusCode::FORBIDDEN, "what edits comes from the page, as JSON");
+    }
     let host = text(headers, header::HOST);
     if !host.is_some_and(is_address) {
         return no(

@@ -3,7 +3,7 @@
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 
-const FILES: [(&str, &str, &str); 25] = [
+const FILES: [(&str, &str, &str); 28] = [
     ("/", "text/html; charset=utf-8", include_str!("pages/index.html")),
     ("/style.css", "text/css; charset=utf-8", include_str!("pages/style.css")),
     ("/app.js", "text/javascript", include_str!("pages/app.js")),
@@ -24,6 +24,9 @@ const FILES: [(&str, &str, &str); 25] = [
     ("/compare.js", "text/javascript", include_str!("pages/compare.js")),
     ("/scatter.js", "text/javascript", include_str!("pages/scatter.js")),
     ("/tasks.js", "text/javascript", include_str!("pages/tasks.js")),
+    ("/episodes.js", "text/javascript", include_str!("pages/episodes.js")),
+    ("/notes.js", "text/javascript", include_str!("pages/notes.js")),
+    ("/pair.js", "text/javascript", include_str!("pages/pair.js")),
     ("/timeline.js", "text/javascript", include_str!("pages/timeline.js")),
     ("/screen.js", "text/javascript", include_str!("pages/screen.js")),
     ("/watch.js", "text/javascript", include_str!("pages/watch.js")),

@@ -8,7 +8,7 @@ use axum::Router;
 use axum::extract::{DefaultBodyLimit, State};
 use axum::http::{StatusCode, Uri};
 use axum::response::Response;
-use axum::routing::get;
+use axum::routing::{get, post};
 use hasard_envs::{Env, EnvId, EnvOptions, RuleSet};
 use hasard_learn::runs::evaluate::{Agent, Choice};
 use serde_json::{Value, json};
@@ -45,6 +45,27 @@ pub trait Agents: Send + Sync {
     /// # Errors
     /// As above.
     fn zoo_run(&self, name: &str) -> Result<PathBuf, String>;
+    /// What those are worth.
+    fn zoo_results(&self) -> Vec<ZooResult> {
+        Vec::new()
+    }
+}
+
+/// What an agent that comes with the program is worth: means over many episodes.
+#[derive(Clone, Debug)]
+pub struct ZooResult {
+    /// Its name.
+    pub name: String,
+    /// What it was trained by.
+    pub algorithm: String,
+    /// Where.
+    pub env: String,
+    /// Sum of rewards of an episode.
+    pub episode_return: f64,
+    /// Sum of costs of an episode.
+    pub cost: f64,
+    /// Cost that an episode may have.
+    pub budget: f64,
 }
 
 /// What is served, and to whom.
@@ -59,6 +80,8 @@ pub struct Settings {
     pub episodes: PathBuf,
     /// Trained agents.
     pub agents: Arc<dyn Agents>,
+    /// Whether a visitor may write notes, and move runs to the trash.
+    pub edit: bool,
 }
 
 /// What the routes share.
@@ -66,6 +89,7 @@ pub(crate) struct Shared {
     pub token: Option<String>,
     pub episodes: PathBuf,
     pub agents: Arc<dyn Agents>,
+    pub edit: bool,
     pub catalogue: Mutex<Catalogue>,
     pub stages: show::Stages,
     pub shows: Arc<Semaphore>,
@@ -97,6 +121,7 @@ impl Server {
             token: settings.token,
             episodes: settings.episodes,
             agents: settings.agents,
+            edit: settings.edit,
             catalogue: Mutex::new(Catalogue::new(settings.folders)),
             stages: show::Stages::default(),
             shows: Arc::new(Semaphore::new(SHOWS)),
@@ -121,6 +146,7 @@ impl Server {
             .route("/api/envs", get(envs))
             .route("/api/runs", get(runs::list))
             .route("/api/run", get(runs::detail))
+            .route("/api/edit", post(runs::edit).layer(DefaultBodyLimit::max(16 << 10)))
             .route("/api/settings", get(runs::settings))
             .route("/api/curves", get(runs::curves))
             .route("/api/compare", get(runs::compare))
@@ -130,6 +156,7 @@ impl Server {
             .route("/api/best", get(episodes::best))
             .route("/api/episode", get(episodes::download))
             .route("/api/film", get(show::film))
+            .route("/api/episodes", get(show::episodes))
             .route("/api/watch", get(show::watch))
             .route("/api/play", get(show::play))
             .fallback(page)
@@ -155,5 +182,7 @@ async fn envs(State(shared): State<Arc<Shared>>) -> Result<Response, Response> {
         })
     })
     .await?;
-    Ok(json_of(&json!({ "envs": envs, "policies": POLICIES, "zoo": shared.agents.zoo() })))
+    Ok(json_of(
+        &json!({ "envs": envs, "policies": POLICIES, "zoo": shared.agents.zoo(), "edit": shared.edit }),
+    ))
 }

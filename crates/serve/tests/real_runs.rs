@@ -204,6 +204,27 @@ fn a_heatmap_lies_on_its_map_as_in_the_report() {
 }
 
 #[test]
+fn a_heatmap_plays_through_training() {
+    let Some(browser) = Browser::open(1280, 1200, false) else { return };
+    let address = served("real-heat-film");
+    open_run(&browser, address);
+    let slide = "document.querySelector('.heat input[type=range]')";
+    browser.wait(&format!("{slide}.max > 1 && {slide}.value == {slide}.max"));
+    browser.wait("document.querySelector('.ends').innerText.includes('%')");
+    // Every moment is shown, from the first to the last.
+    browser.script("window.seen = []; new MutationObserver(() => seen.push(document.querySelector('.heat figcaption').innerText)).observe(document.querySelector('.heat figcaption'), { childList: true, characterData: true, subtree: true }); document.getElementById('heat-film').click()");
+    browser.wait("document.getElementById('heat-film').innerText == 'Stop'");
+    browser.wait_long("document.getElementById('heat-film').innerText == 'Play through training'");
+    let moments: Vec<u64> =
+        lines("heatmaps.jsonl").iter().map(|line| line["frames"].as_u64().unwrap()).collect();
+    let seen = browser
+        .script("return seen.map((text) => Number(text.match(/At ([\\d,]+) frames/)[1].replaceAll(',', '')))");
+    let seen: Vec<u64> = seen.as_array().unwrap().iter().filter_map(Value::as_u64).collect();
+    assert!(seen.is_sorted() && moments.iter().all(|one| seen.contains(one)), "{seen:?}");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
 fn experiments_are_folded_and_compared_by_environment() {
     let Some(browser) = Browser::open(1280, 1200, false) else { return };
     let address = served("real-compare");

@@ -10,10 +10,14 @@ pub fn run(args: &PlayArgs) -> Outcome {
     use hasard_media::shell::quote;
     let options = crate::settings::env_options(&args.env_args, Size { width: 640, height: 480 })?;
     let folder = (!args.no_record).then(|| args.out.clone());
+    let first = hasard_play::guide::task(&args.env).map_or(0, |task| task.seed);
+    let rivals = rivals(&args.env, args.env_args.hard, &args.out);
     let settings = hasard_play::PlaySettings {
         env: args.env.clone(),
         options,
-        seed: args.seed,
+        fits_window: args.env_args.size.is_none(),
+        rivals,
+        seed: args.seed.unwrap_or(first),
         folder,
         player: args.player.clone(),
     };
@@ -26,6 +30,21 @@ pub fn run(args: &PlayArgs) -> Outcome {
         say!("see it again: hasard replay {path} -o episode.mp4; count it: hasard report {out}");
     }
     Ok(())
+}
+
+/// Results within the budget: of kept episodes, and of the zoo's agent; the best first.
+#[cfg(feature = "window")]
+fn rivals(env: &str, hard: bool, folder: &std::path::Path) -> Vec<hasard_play::Rival> {
+    use hasard_play::Rival;
+    let people = hasard_play::kept_results(folder, env, hard);
+    let zoo = crate::zoo::results().into_iter().filter(|one| one.env == env && !hard);
+    let zoo = zoo.filter(|one| one.cost <= one.budget).map(|one| Rival {
+        who: format!("{} of the zoo, mean of many episodes", one.algorithm),
+        episode_return: one.episode_return,
+    });
+    let mut all: Vec<Rival> = people.into_iter().chain(zoo).collect();
+    all.sort_by(|a, b| b.episode_return.total_cmp(&a.episode_return));
+    all
 }
 
 /// Runs the command.

@@ -42,6 +42,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
         token: token.clone(),
         folders,
         episodes: args.out.clone(),
+        edit: args.edit,
         agents: std::sync::Arc::new(trained::Trained {
             maps: args.maps.clone(),
             iwad: args.iwad.clone(),
@@ -124,6 +125,20 @@ mod trained {
 
         fn zoo_run(&self, name: &str) -> Result<PathBuf, String> {
             crate::zoo::find(format!("zoo:{name}").as_ref()).map_err(Failure::line)
+        }
+
+        fn zoo_results(&self) -> Vec<hasard_serve::ZooResult> {
+            static RESULTS: std::sync::OnceLock<Vec<hasard_serve::ZooResult>> =
+                std::sync::OnceLock::new();
+            let result = |one: crate::zoo::Worth| hasard_serve::ZooResult {
+                name: one.name,
+                algorithm: one.algorithm,
+                env: one.env,
+                episode_return: one.episode_return,
+                cost: one.cost,
+                budget: one.budget,
+            };
+            RESULTS.get_or_init(|| crate::zoo::results().into_iter().map(result).collect()).clone()
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod axis;
 mod bars;
+mod font;
 mod lines;
 mod pdf;
 mod raster;

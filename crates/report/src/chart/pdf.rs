@@ -1,5 +1,6 @@
 //! Figures as PDF: vectors and letters, for papers.
 
+use super::font::{BOLD, PLAIN};
 use super::raster::colour;
 use super::{Anchor, Drawing, Ink, Shape};
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
@@ -10,23 +11,15 @@ const POINTS: f32 = 0.75;
 const MARGIN: f32 = 4.0;
 /// Steps between seen through and opaque.
 const OPACITIES: u8 = 20;
-/// What the letters from the space to the tilde are wide in Helvetica, in thousandths of their
-/// size.
-const WIDTHS: [u16; 95] = [
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556,
-    556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
-    611, 778, 722, 278, 500, 667, 556, 833, 722, 778, 667, 778, 722, 667, 611, 722, 667, 944, 667,
-    667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500,
-    222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
-];
-
-/// A figure in its light colours as a page of its own size. Its letters are Helvetica, one of the
-/// fonts that every reader of PDF has.
+/// A figure in its light colours as a page of its own size. It carries the fonts of its letters.
 #[must_use]
 pub fn pdf(drawing: &Drawing) -> Vec<u8> {
     let (width, height) =
         (drawing.width as f32 + 2.0 * MARGIN, drawing.height as f32 + 2.0 * MARGIN);
-    let [catalog, pages, page, plain, bold, content] = [1, 2, 3, 4, 5, 6].map(Ref::new);
+    let [catalog, pages, page, content] = [1, 2, 3, 4].map(Ref::new);
+    let (plain, bold) = ([5, 6, 7].map(Ref::new), [8, 9, 10].map(Ref::new));
+    let is_bold = |shape: &Shape| matches!(shape, Shape::Text { bold: true, .. });
+    let has_bold = drawing.shapes.iter().any(is_bold);
     let mut file = Pdf::new();
     file.catalog(catalog).pages(pages);
     file.pages(pages).kids([page]).count(1);
@@ -35,7 +28,12 @@ pub fn pdf(drawing: &Drawing) -> Vec<u8> {
         .parent(pages)
         .contents(content);
     let mut resources = one.resources();
-    resources.fonts().pair(Name(b"F1"), plain).pair(Name(b"F2"), bold);
+    let mut fonts = resources.fonts();
+    fonts.pair(Name(b"F1"), plain[0]);
+    if has_bold {
+        fonts.pair(Name(b"F2"), bold[0]);
+    }
+    fonts.finish();
     let mut states = resources.ext_g_states();
     for step in 0..=OPACITIES {
         let share = f32::from(step) / f32::from(OPACITIES);
@@ -48,8 +46,9 @@ pub fn pdf(drawing: &Drawing) -> Vec<u8> {
     states.finish();
     resources.finish();
     one.finish();
-    for (font, name) in [(plain, &b"Helvetica"[..]), (bold, b"Helvetica-Bold")] {
-        file.type1_font(font).base_font(Name(name)).encoding_predefined(Name(b"WinAnsiEncoding"));
+    PLAIN.embed(&mut file, plain);
+    if has_bold {
+        BOLD.embed(&mut file, bold);
     }
     let mut drawn = Content::new();
     // From CSS pixels downwards to points upwards.
@@ -117,7 +116,7 @@ fn draw(shape: &Shape, drawn: &mut Content) {
         Shape::Text { at, anchor, size, bold, text, .. } => {
             let letters = win_ansi(text);
             let size = *size as f32;
-            let wide = width(&letters) * size * if *bold { 1.06 } else { 1.0 };
+            let wide = size * if *bold { BOLD.width(&letters) } else { PLAIN.width(&letters) };
             let x = at.0 as f32
                 - match anchor {
                     Anchor::Start => 0.0,
@@ -162,14 +161,6 @@ fn win_ansi(text: &str) -> Vec<u8> {
     text.chars().map(letter).collect()
 }
 
-/// What a text is wide, in parts of its size.
-fn width(letters: &[u8]) -> f32 {
-    let of = |letter: &u8| {
-        letter.checked_sub(b' ').and_then(|at| WIDTHS.get(usize::from(at))).copied().unwrap_or(556)
-    };
-    letters.iter().map(|letter| f32::from(of(letter))).sum::<f32>() / 1000.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -194,12 +185,25 @@ mod tests {
             "(return 3) Tj",
             "0 0 m\n20 5 l\nS",
             "/G10 gs",
-            "/Helvetica-Bold",
+            "/BaseFont /HasardPlotSans\n",
+            "/FontFile2 7 0 R",
             "%%EOF",
         ] {
             assert!(text.contains(part), "{part}\n{text}");
         }
-        // Helvetica's r, e, t, u, r, n: 333 + 556 + 278 + 556 + 333 + 556 thousandths.
-        assert!((width(b"return") - 2.612).abs() < 1e-6);
+        // No bold letter, no bold font.
+        assert!(!text.contains("HasardPlotSans-Bold") && bytes.len() < 40_000, "{}", bytes.len());
+        // r, e, t, u, r, n: 411 + 615 + 392 + 634 + 411 + 634 thousandths.
+        assert!((PLAIN.width(b"return") - 3.097).abs() < 1e-6);
+        drawing.shapes.push(Shape::Text {
+            at: (0.0, 0.0),
+            anchor: Anchor::Start,
+            ink: Ink::Text,
+            size: 11.0,
+            bold: true,
+            text: "cost ±".into(),
+        });
+        let text: String = pdf(&drawing).iter().map(|byte| char::from(*byte)).collect();
+        assert!(text.contains("/BaseFont /HasardPlotSans-Bold\n") && text.contains("10 0 R"));
     }
 }

@@ -1,5 +1,7 @@
 //! Small run directories with curves of known shape, made in a moment.
 
+#![allow(dead_code, reason = "each test file uses some of it")]
+
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

@@ -48,6 +48,14 @@ export async function ask(path) {
   return body;
 }
 
+// Writes to the server; gives its answer or throws its reason.
+export async function tell(path, body) {
+  const answer = await fetch(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) });
+  const said = await answer.json();
+  if (!answer.ok) throw new Error(said.error ?? answer.statusText);
+  return said;
+}
+
 // The part of the address after the #: a page's name and its state.
 export function state() {
   const [page, query] = location.hash.slice(1).split('?');

@@ -7,6 +7,9 @@ const HEAT = [[48, 18, 110], [140, 30, 130], [225, 70, 85], [252, 160, 60], [254
 // Less and more.
 const LESS = [56, 135, 225], MORE = [240, 120, 30];
 
+// Milliseconds of a moment in the film through training.
+const STAY = 250;
+
 export function heat_colour(heat) {
   const place = Math.min(1, Math.max(0, heat)) * (HEAT.length - 1);
   const low = Math.min(HEAT.length - 2, Math.floor(place));
@@ -37,8 +40,9 @@ export class Heatmap {
     this.caption = make('figcaption', {}, 'No heatmap yet: a training writes them as it goes.');
     this.slide = make('input', { type: 'range', min: 0, max: 0, value: 0, 'aria-label': 'Moment of the heatmap', disabled: true, oninput: () => this.show(Number(this.slide.value)) });
     this.other = make('span');
+    this.film = make('button', { id: 'heat-film', disabled: true, onclick: () => this.play() }, 'Play through training');
     const scale = make('div', { class: 'scale' }, make('div', {}, this.bar, make('div', { class: 'ends' }, ...this.ends)), make('span', { class: 'note', id: 'heat-unit' }, ''));
-    this.element = make('div', { class: 'card heat' }, make('h2', {}, 'Visited positions'), make('p', { class: 'pale' }, 'Click a curve to choose the moment, or move this:'), this.slide, make('div', { class: 'row' }, field('compare with', this.other)), make('figure', {}, this.canvas, scale, this.caption));
+    this.element = make('div', { class: 'card heat' }, make('h2', {}, 'Visited positions'), make('p', { class: 'pale' }, 'Click a curve to choose the moment, or move this:'), this.slide, make('div', { class: 'row' }, field('compare with', this.other), this.film), make('figure', {}, this.canvas, scale, this.caption));
   }
 
   // The moments there are now.
@@ -48,9 +52,26 @@ export class Heatmap {
     this.moments = moments;
     this.slide.max = Math.max(0, moments.length - 1);
     this.slide.disabled = moments.length < 2;
+    this.film.disabled = moments.length < 2;
     if (grown) this.other.replaceChildren(choose([['', 'nothing'], ...moments.map((frames, k) => [String(k), `the moment at ${short(frames)} frames`])], this.against, (value) => { this.against = value; const at = this.shown; this.shown = -1; this.show(at); }));
     // Who looks at the newest goes on doing so.
     if (moments.length && newest) this.show(moments.length - 1);
+  }
+
+  // Shows the moments one after the other, from the first if the last is shown; again, and it stops.
+  async play() {
+    if (this.playing) { this.playing = false; return; }
+    this.playing = true;
+    this.film.textContent = 'Stop';
+    let at = this.shown >= this.moments.length - 1 ? 0 : this.shown;
+    while (this.playing && this.element.isConnected && at < this.moments.length) {
+      const turn = new Promise((done) => { setTimeout(done, STAY); });
+      await this.show(at);
+      await turn;
+      at += 1;
+    }
+    this.playing = false;
+    this.film.textContent = 'Play through training';
   }
 
   at_frames(frames) {

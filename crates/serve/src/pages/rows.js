@@ -91,8 +91,9 @@ export class Rows {
 
   name(key, what, seed, is_open) {
     const [run] = what.runs;
-    if (seed) return [make('a', { href: `#run?id=${run.id}`, 'data-run': run.id }, `seed ${run.seed}`), make('span', { class: 'note' }, path_rest(run))];
-    const note = make('span', { class: 'note', title: what.full }, what.rest);
+    if (seed) return [make('a', { href: `#run?id=${run.id}`, 'data-run': run.id }, `seed ${run.seed}`), make('span', { class: 'note' }, [path_rest(run), ...(run.notes?.tags ?? []).map((tag) => `#${tag}`)].filter(Boolean).join(' '))];
+    const tags = [...new Set(what.runs.flatMap((one) => one.notes?.tags ?? []))];
+    const note = make('span', { class: 'note', title: what.full }, [what.rest, ...tags.map((tag) => `#${tag}`)].filter(Boolean).join(' '));
     if (what.runs.length === 1) return [make('a', { href: `#run?id=${run.id}`, 'data-run': run.id }, what.algo), note, make('span', { class: 'note' }, path_rest(run))];
     return [make('button', { class: 'open', 'aria-expanded': String(is_open), onclick: () => this.onopen(key) }, what.algo), note];
   }

@@ -6,6 +6,7 @@ import { Heatmap } from '/heat.js';
 import { evaluation_of, picker, title_of, usual } from '/metrics.js';
 import { env_name } from '/names.js';
 import { ownSettings, settingsTable } from '/settings.js';
+import { NotesCard } from '/notes.js';
 import { strip } from '/strip.js';
 import { kept, tools } from '/tools.js';
 
@@ -21,7 +22,8 @@ export function run(main, query) {
   const heat = new Heatmap(id, (frames) => { shared.moment = in_axis(frames); shared.charts.forEach((chart) => chart.tell()); });
   const picked = make('div'), charts = make('div', { class: 'charts' }), settings = make('div'), other = make('span'), beside = make('div');
   const bar = tools(shared, query, (again) => { keep(); if (again) draw(); });
-  main.append(make('section', { class: 'card' }, title, tiles, links),
+  const notes = new NotesCard(id);
+  main.append(make('section', { class: 'card' }, title, tiles, links, notes.element),
     make('section', { class: 'run' },
       make('div', { class: 'card' }, make('h2', {}, 'Curves'), bar, picked, charts, make('p', { class: 'note' }, 'Drag over a curve to look closer, double-click to go back; with the keyboard +, -, arrows and 0.')),
       heat.element),
@@ -116,6 +118,7 @@ export function run(main, query) {
       if (!me) throw new Error('There is no such run; choose one from the list of runs.');
       title.textContent = `${me.algo} in ${env_name(me.env)}, seed ${me.seed}`;
       title.title = me.name;
+      notes.show(me);
       tiles.replaceChildren(...strip(me, detail.over));
       chosen ??= new Set(query.get('metrics')?.split(',').filter(Boolean) ?? usual(detail.metrics, me.last));
       // Another run may have taken its place, or it was resumed with other settings.

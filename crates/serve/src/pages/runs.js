@@ -13,15 +13,16 @@ export function runs(main, query) {
   const chosen = new Set((query.get('chosen') ?? '').split(',').filter(Boolean));
   const wanted = Object.fromEntries(['env', 'algo', 'option', 'text', 'sort'].map((name) => [name, query.get(name) ?? '']));
   const env = make('span'), algo = make('span'), option = make('span');
-  const text = make('input', { type: 'search', value: wanted.text, placeholder: 'name or setting', oninput: () => { wanted.text = text.value; list(); } });
+  const text = make('input', { type: 'search', value: wanted.text, placeholder: 'name, setting, tag', oninput: () => { wanted.text = text.value; list(); } });
   const count = make('p', { class: 'pale', role: 'status' });
   const change_choice = (all, on) => { for (const run of all) if (on) chosen.add(run.id); else chosen.delete(run.id); list(); compare(); };
   const rows = new Rows(change_choice, (sort) => { wanted.sort = sort; list(); }, (key) => { if (!open.delete(key)) open.add(key); list(); });
+  const archived = make('input', { type: 'checkbox', id: 'archived', onchange: () => list() });
   const every = make('button', { onclick: () => change_choice(filtered().flatMap((row) => row.runs).slice(0, CHOSEN), true) }, 'Compare all of these');
   const none = make('button', { onclick: () => { chosen.clear(); list(); compare(); } }, 'Compare none');
   const comparison = new Comparison(query, list);
   const card = make('section', { class: 'card', id: 'list' }, make('h1', {}, 'Runs'),
-    make('div', { class: 'row' }, field('environment', env), field('algorithm', algo), field('setting', option), field('search', text)), make('div', { class: 'row count' }, count, every, none), rows.element);
+    make('div', { class: 'row' }, field('environment', env), field('algorithm', algo), field('setting', option), field('search', text), make('label', { class: 'check', hidden: true }, archived, 'archived too')), make('div', { class: 'row count' }, count, every, none), rows.element);
   const hint = make('section', { class: 'card', hidden: true });
   main.append(hint, card, comparison.element);
 
@@ -29,8 +30,9 @@ export function runs(main, query) {
   const settings = (run) => Object.entries(options.get(run.experiment) ?? {}).map(([name, value]) => `${name} = ${value}`);
 
   function filtered() {
-    const text_of = (run) => `${run.name} ${run.env} ${run.algo} ${settings(run).join(' ')}`;
-    const fits = (run) => (!wanted.env || run.env === wanted.env) && (!wanted.algo || run.algo === wanted.algo)
+    const text_of = (run) => `${run.name} ${run.env} ${run.algo} ${settings(run).join(' ')} ${run.notes?.note ?? ''} ${(run.notes?.tags ?? []).join(' ')}`;
+    archived.parentElement.hidden = ![...known.values()].some((run) => run.notes?.archived);
+    const fits = (run) => (archived.checked || !run.notes?.archived) && (!wanted.env || run.env === wanted.env) && (!wanted.algo || run.algo === wanted.algo)
       && (!wanted.option || settings(run).includes(wanted.option)) && (!wanted.text || text_of(run).includes(wanted.text));
     const groups = new Map();
     for (const run of known.values()) if (fits(run)) groups.set(run.experiment, [...(groups.get(run.experiment) ?? []), run]);

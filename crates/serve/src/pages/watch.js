@@ -2,16 +2,20 @@ import { ask, choose, field, keepState, make, number } from '/dom.js';
 import { Screen } from '/screen.js';
 import { env_name, path_rest } from '/names.js';
 import { Timeline } from '/timeline.js';
+import { Episodes } from '/episodes.js';
+import { Pair } from '/pair.js';
 
 const VIEWS = ['depth', 'segmented', 'automap'];
 const SPEEDS = [['0.25', '¼ speed'], ['0.5', '½ speed'], ['1', 'normal speed'], ['2', '2 × speed'], ['4', '4 × speed'], ['8', '8 × speed']];
 const FIRST = 'VolcanicVentureLevel1-v0';
 // What a link holds, and what it is where the link does not say.
-const STATE = { env: '', agent: 'random', seed: '1', step: '0', size: '640x480', beside: VIEWS.join(','), best: '', greedy: '', hard: '', full: '', rules: 'paper', paused: '' };
+const STATE = { env: '', agent: 'random', seed: '1', step: '0', size: '640x480', beside: VIEWS.join(','), best: '', greedy: '', hard: '', full: '', rules: 'paper', paused: '', second: '' };
 // What the buttons of a group do together.
 const GROUPS = [['turn', /TURN_|TURN180/], ['strafe', /MOVE_LEFT|MOVE_RIGHT/], ['move', /MOVE_/], ['look', /LOOK_/], ['jump', /JUMP/], ['run', /SPEED/], ['attack', /ATTACK/], ['crouch', /CROUCH/], ['use', /USE/], ['weapon', /WEAPON/]];
 const run_name = (run) => [`${run.algo}, ${env_name(run.env)}, seed ${run.seed}`, path_rest(run)].filter(Boolean).join(' – ');
 export const group_name = (buttons) => (GROUPS.find(([, all]) => buttons.every((name) => all.test(name))) ?? GROUPS.find(([, some]) => buttons.some((name) => some.test(name))) ?? ['buttons'])[0];
+// What of the state a second agent shares.
+const SHARED = ['seed', 'step', 'size', 'hard', 'full', 'rules', 'paused'];
 const has_task = (agent) => /^(run|zoo|episode):/.test(agent);
 
 export function watch(main, query) {
@@ -23,8 +27,11 @@ export function watch(main, query) {
   const figures = Object.fromEntries(VIEWS.map((view) => [view, make('figure', { 'data-view': view }, canvases[view], make('figcaption', {}, view === 'automap' ? 'map' : view))]));
   const film = make('a', { class: 'button', id: 'film', download: true, title: 'The whole episode as MP4' }, 'Download film');
   const button = (text, title, onclick, more = {}) => make('button', { title, onclick, ...more }, text);
-  const go = button('Pause', 'Space', () => screen?.ask({ do: paused || ended ? 'go' : 'pause' }), { class: 'main', id: 'go' });
-  const speed = choose(SPEEDS, '1', (value) => screen?.ask({ do: 'speed', value: Number(value) }));
+  const pair = new Pair();
+  const tell = (message) => { screen?.ask(message); pair.ask(message); };
+  const episodes = new Episodes((seed) => { Object.assign(now, { seed, step: '0', paused: '', greedy: '', best: now.agent.startsWith('run:') ? 'true' : '' }); controls(); });
+  const go = button('Pause', 'Space', () => tell({ do: paused || ended ? 'go' : 'pause' }), { class: 'main', id: 'go' });
+  const speed = choose(SPEEDS, '1', (value) => tell({ do: 'speed', value: Number(value) }));
   speed.setAttribute('aria-label', 'Speed');
   const on = make('input', { type: 'checkbox', id: 'on' });
   const time = new Timeline(jump);
@@ -38,14 +45,14 @@ export function watch(main, query) {
   const next = button('Next seed', 'Another episode; of a running training, with its newest checkpoint', () => screen?.ask({ do: 'next' }), { id: 'next' });
   main.append(make('section', { class: 'card head' }, make('h1', { class: 'unseen' }, 'Watch'), form, link),
     make('section', { class: 'stage' },
-      make('div', { class: 'card' }, canvases.colour, numbers, time.slide, time.line, time.key,
-        make('div', { class: 'row' }, go, button('+1 frame', '.', () => screen?.ask({ do: 'tic' }), { id: 'tic' }), button('−1 action', 'Left arrow', () => jump(step - 1)), button('+1 action', 'Right arrow', () => jump(step + 1)), speed, next,
+      make('div', { class: 'card' }, make('div', { class: 'pair' }, canvases.colour, pair.element), numbers, time.slide, time.line, time.key,
+        make('div', { class: 'row' }, go, button('+1 frame', '.', () => tell({ do: 'tic' }), { id: 'tic' }), button('−1 action', 'Left arrow', () => jump(step - 1)), button('+1 action', 'Right arrow', () => jump(step + 1)), speed, next,
           make('label', { class: 'check' }, on, 'go on with the next seed'), copy, film, copied),
         make('p', { class: 'pale' }, 'Keys: Space plays and pauses, the full stop shows one frame (a game tic), arrows go an action back and on.')),
-      make('div', { class: 'card side' }, make('div', { class: 'beside' }, figures.automap, figures.depth, figures.segmented),
+      make('div', { class: 'card side' }, make('div', { class: 'beside' }, figures.automap, figures.depth, figures.segmented), episodes.element,
         make('h2', {}, 'Policy'), thoughts, make('h2', {}, 'Events'), make('p', { class: 'pale' }, 'Click one to jump to the moment before it.'), time.events)));
 
-  function jump(to) { screen?.ask({ do: 'jump', step: Math.max(0, Math.min(to, Number(time.slide.max))) }); }
+  function jump(to) { tell({ do: 'jump', step: Math.max(0, Math.min(to, Number(time.slide.max))) }); }
 
   function begin() {
     keepState('watch', now);
@@ -58,16 +65,28 @@ export function watch(main, query) {
     screen?.end();
     screen = new Screen(path, canvases, { onframe, onwords, onlink: (text) => { link.textContent = text; } });
     if (speed.value !== '1') speed.value = '1';
+    if (!now.second) pair.end();
+    episodes.of(!now.agent.startsWith('episode:') ? new URLSearchParams({ agent: now.agent, env: now.env, best: now.agent.startsWith('run:') ? 'true' : 'false' }).toString() : '', now.seed);
+  }
+
+  // The second agent begins where the first is, in its environment.
+  function begin_second() {
+    if (!now.second) return;
+    const shared = Object.fromEntries(SHARED.map((name) => [name, now[name] || (name === 'step' ? '0' : 'false')]));
+    pair.begin(now.second, new URLSearchParams({ ...shared, rules: now.rules, env: scene.env, agent: now.second, best: String(now.second.startsWith('run:')) }));
   }
 
   function onwords(words) {
     if (words.kind === 'scene') {
       scene = words;
-      now.seed = String(words.seed);
+      // Another episode begins at its start.
+      if (now.seed !== words.seed) Object.assign(now, { seed: words.seed, step: '0', paused: '' });
       const seed = form.querySelector('input[type=number]');
       if (seed) seed.value = now.seed;
       if (speed.value !== '1') screen.ask({ do: 'speed', value: Number(speed.value) });
       time.begin(words);
+      episodes.at(now.seed, words.budget);
+      begin_second();
     } else if (words.kind === 'steps') time.steps(words);
   }
 
@@ -124,17 +143,20 @@ export function watch(main, query) {
     const of_task = has_task(now.agent) ? [] : [tick('hard', 'hard constraint'), tick('full', 'full actions'), field('rules', choose(['paper', 'released', 'tables'], now.rules, restart('rules')))];
     const agent = choose([], '', restart('agent'));
     for (const [name, list] of Object.entries(groups)) if (list.length) agent.append(make('optgroup', { label: name }, ...list.map(([key, text]) => make('option', { value: key, selected: key === now.agent }, text))));
+    const beside = choose([['', 'nobody']], now.second, (value) => { Object.assign(now, { second: value }); pair.end(); begin(); });
+    for (const [name, list] of Object.entries(groups)) if (list.length && name !== 'recorded episodes') beside.append(make('optgroup', { label: name }, ...list.map(([key, text]) => make('option', { value: key, selected: key === now.second }, text))));
+    beside.id = 'beside';
     const own = has_task(now.agent) ? [['', 'the agent’s own']] : [];
-    form.replaceChildren(field('environment', choose([...own, ...what.envs.map((env) => env.id)], now.env, restart('env'))), field('agent', agent), field('seed', seed), field('size', choose(['160x120', '320x240', '640x480', '1280x960'], now.size, redraw('size'))), ...besides, ...of_agent, ...of_task);
+    form.replaceChildren(field('environment', choose([...own, ...what.envs.map((env) => env.id)], now.env, restart('env'))), field('agent', agent), field('beside it', beside), field('seed', seed), field('size', choose(['160x120', '320x240', '640x480', '1280x960'], now.size, redraw('size'))), ...besides, ...of_agent, ...of_task);
     begin();
   }
   const keys = (event) => {
     if (event.target.matches('input,select,button,a') || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.key === ' ') { go.click(); event.preventDefault(); } else if (event.key === '.') screen?.ask({ do: 'tic' });
+    if (event.key === ' ') { go.click(); event.preventDefault(); } else if (event.key === '.') tell({ do: 'tic' });
     else if (event.key === 'ArrowRight') jump(step + 1);
     else if (event.key === 'ArrowLeft') jump(step - 1);
   };
   addEventListener('keydown', keys);
   controls();
-  return () => { gone = true; screen?.end(); removeEventListener('keydown', keys); };
+  return () => { gone = true; screen?.end(); pair.end(); removeEventListener('keydown', keys); };
 }

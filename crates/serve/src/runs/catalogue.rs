@@ -2,6 +2,7 @@
 
 use super::columns::Columns;
 use super::evaluated::{self, Stamped};
+use super::notes::{self, Notes};
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -50,6 +51,10 @@ struct Run {
     last: Map<String, Value>,
     /// What its selected checkpoint is worth, once it has one.
     evaluation: Stamped,
+    /// What people say of it.
+    notes: Notes,
+    /// The folder of those that are served in which it lies.
+    top: PathBuf,
     alive: bool,
     /// Number of the change that made it what it is.
     change: u64,
@@ -166,6 +171,8 @@ impl Catalogue {
                     metrics: Stamp { bytes: u64::MAX, ..Stamp::NONE },
                     last: Map::new(),
                     evaluation: Stamped::default(),
+                    notes: Notes::default(),
+                    top: top.to_owned(),
                     alive: false,
                     change: self.changes,
                 };
@@ -177,7 +184,8 @@ impl Catalogue {
         }
         let Ok(entries) = std::fs::read_dir(folder) else { return };
         for entry in entries.flatten() {
-            if depth < MAX_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            let trash = depth == 0 && entry.file_name() == notes::TRASH;
+            if !trash && depth < MAX_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
                 self.search(top, &entry.path(), depth + 1, there);
             }
         }
@@ -186,6 +194,16 @@ impl Catalogue {
     /// The directory of a run.
     pub fn path(&self, id: &str) -> Option<PathBuf> {
         self.runs.get(id).map(|run| run.path.clone())
+    }
+
+    /// A run's directory, its name, and the folder of those that are served in which it lies.
+    pub fn place(&self, id: &str) -> Option<(PathBuf, String, PathBuf)> {
+        self.runs.get(id).map(|run| (run.path.clone(), run.name.clone(), run.top.clone()))
+    }
+
+    /// Something was written or moved: the next look is not put off.
+    pub fn look_again(&mut self) {
+        (self.looked, self.searched) = (None, None);
     }
 
     /// The runs that changed after a number of changes, and that number now.
@@ -256,6 +274,7 @@ impl Run {
             && metrics.bytes > 0
             && now.duration_since(metrics.modified).unwrap_or_default() < ALIVE;
         let evaluated = self.evaluation.look(&self.path);
+        let evaluated = self.notes.look(&self.path) || evaluated;
         let changed = evaluated || (metrics, alive) != (self.metrics, self.alive);
         (self.metrics, self.alive) = (metrics, alive);
         changed
@@ -282,6 +301,7 @@ impl Run {
         json!({
             "id": id, "settled": self.settled, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
             "budget": config.safety_budget, "preset": config.options.get("preset"), "total": total, "state": state, "last": last,
+            "notes": self.notes.told(),
             "evaluation": self.evaluation.found.as_ref().map(|found| evaluated::told(found, config)),
         })
     }

@@ -6,10 +6,12 @@ mod compared;
 mod detail;
 mod evaluated;
 pub(crate) mod metrics;
+mod notes;
 
 pub(crate) use catalogue::Catalogue;
 pub(crate) use compared::compare;
 pub(crate) use detail::{detail, settings};
+pub(crate) use notes::edit;
 
 use crate::answer::{aside, json_of, refusal};
 use crate::server::Shared;

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `query` | what an address asks for, bounded |
 //! | `rehearsal` | an episode acted out once, with what every step brought and what the agent thought |
+//! | `repertoire` | an agent's episodes at a glance: seed, return, cost |
 //! | `stages` | stages built lately, shared by their viewers |
 //! | `watching` | an episode shown: pause, tic, speed, jumps |
 //! | `filming` | an episode as a film to keep |
@@ -18,10 +19,12 @@ mod line;
 mod playing;
 mod query;
 mod rehearsal;
+mod repertoire;
 mod stages;
 mod watching;
 
 pub(crate) use filming::film;
+pub(crate) use repertoire::episodes;
 pub(crate) use stages::Stages;
 
 use crate::answer::refusal;

@@ -105,6 +105,11 @@ impl Rehearsal {
         self.facts.len()
     }
 
+    /// Return and cost so far.
+    pub fn sums(&self) -> (f64, f64) {
+        self.facts.last().map_or((0.0, 0.0), |fact| (fact.episode_return, fact.episode_cost))
+    }
+
     /// What is pressed in a step.
     pub fn command(&self, step: usize) -> Option<Command> {
         self.facts.get(step).map(|fact| fact.command)
@@ -196,7 +201,7 @@ impl Rehearsal {
             .collect();
         let budget = self.env.id().safety_budget(self.options.rules, self.options.hard);
         json!({
-            "kind": "scene", "env": self.id, "seed": self.seed, "budget": budget, "groups": groups,
+            "kind": "scene", "env": self.id, "seed": self.seed.to_string(), "budget": budget, "groups": groups,
             "terms": self.env.cost_terms().iter().map(|term| term.name).collect::<Vec<_>>(),
             "frame_skip": self.options.frame_skip, "length": self.env.episode_steps(),
         })

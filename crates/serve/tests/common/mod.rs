@@ -43,12 +43,22 @@ pub fn folder(name: &str) -> PathBuf {
 
 /// Serves `FOLDER/runs`, and episodes in `FOLDER/human`, until the test's process ends.
 pub fn serve_at(address: &str, folder: &Path, token: Option<&str>) -> SocketAddr {
+    serve_as(address, folder, token, false)
+}
+
+/// The same, with notes that may be written.
+pub fn serve_edited(folder: &Path) -> SocketAddr {
+    serve_as("127.0.0.1:0", folder, None, true)
+}
+
+fn serve_as(address: &str, folder: &Path, token: Option<&str>, edit: bool) -> SocketAddr {
     let server = Server::bind(Settings {
         address: address.parse().unwrap(),
         token: token.map(str::to_owned),
         folders: vec![folder.join("runs")],
         episodes: folder.join("human"),
         agents: Arc::new(Nobody),
+        edit,
     })
     .unwrap();
     let address = server.address();

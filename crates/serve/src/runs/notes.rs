@@ -1,0 +1,161 @@
+//! What people say of a run: a note, tags, whether it is put aside; and runs moved to the trash.
+//!
+//! `notes.json` of a run holds it. A run that is thrown away is a folder below `.trash` of the
+//! folder that is served: nothing is ever removed.
+
+use super::catalogue::Stamp;
+use super::{on_catalogue, read};
+use crate::answer::{aside, json_of, refusal};
+use crate::server::Shared;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use hasard_media::files::write_whole;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The folder of runs that were thrown away.
+pub(super) const TRASH: &str = ".trash";
+const FILE: &str = "notes.json";
+/// Letters of a note, letters of a tag, tags.
+const LONGEST_NOTE: usize = 4000;
+const LONGEST_TAG: usize = 40;
+const MOST_TAGS: usize = 20;
+
+#[derive(Serialize, Deserialize, Default, Clone, PartialEq, Debug)]
+struct Words {
+    #[serde(default)]
+    note: String,
+    #[serde(default)]
+    tags: Vec<String>,
+    #[serde(default)]
+    archived: bool,
+}
+
+/// The notes of a run and the file that they were read from, as it was then.
+pub(super) struct Notes {
+    stamp: Stamp,
+    words: Words,
+}
+
+impl Default for Notes {
+    fn default() -> Notes {
+        Notes { stamp: Stamp::NONE, words: Words::default() }
+    }
+}
+
+impl Notes {
+    /// Reads them again if the file is another; whether it was.
+    pub fn look(&mut self, run: &Path) -> bool {
+        let path = run.join(FILE);
+        let stamp = Stamp::of(&path).unwrap_or(Stamp::NONE);
+        if stamp == self.stamp {
+            return false;
+        }
+        self.stamp = stamp;
+        let words = read(&path).and_then(|text| serde_json::from_str(&text).ok());
+        self.words = words.unwrap_or_default();
+        true
+    }
+
+    /// Nothing where there is nothing to say.
+    pub fn told(&self) -> Value {
+        if self.words == Words::default() { Value::Null } else { json!(self.words) }
+    }
+}
+
+/// What is to become of a run.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Edit {
+    id: String,
+    note: Option<String>,
+    tags: Option<Vec<String>>,
+    archived: Option<bool>,
+    /// The name of the run that is to be thrown away: asked for twice, so that no slip does it.
+    throw_away: Option<String>,
+}
+
+impl Edit {
+    /// The notes with what was changed.
+    fn changed(self, mut words: Words) -> Result<Words, String> {
+        if let Some(note) = self.note {
+            if note.chars().count() > LONGEST_NOTE {
+                return Err(format!("a note has at most {LONGEST_NOTE} letters"));
+            }
+            words.note = note;
+        }
+        if let Some(tags) = self.tags {
+            let mut tags: Vec<String> = tags.iter().map(|tag| tag.trim().to_owned()).collect();
+            tags.retain(|tag| !tag.is_empty());
+            tags.sort();
+            tags.dedup();
+            if tags.len() > MOST_TAGS || tags.iter().any(|tag| tag.chars().count() > LONGEST_TAG) {
+                let why = format!("a run has at most {MOST_TAGS} tags of {LONGEST_TAG} letters");
+                return Err(why);
+            }
+            words.tags = tags;
+        }
+        words.archived = self.archived.unwrap_or(words.archived);
+        Ok(words)
+    }
+}
+
+/// Writes notes of a run, or throws it away.
+pub(crate) async fn edit(
+    State(shared): State<Arc<Shared>>,
+    body: String,
+) -> Result<Response, Response> {
+    let edit: Edit = serde_json::from_str(&body)
+        .map_err(|error| refusal(StatusCode::UNPROCESSABLE_ENTITY, &error.to_string()))?;
+    let id = edit.id.clone();
+    let place = on_catalogue(Arc::clone(&shared), move |catalogue| {
+        catalogue.refresh();
+        catalogue.place(&id)
+    });
+    let Some((path, name, top)) = place.await? else {
+        let why = "there is no such run; choose one from the list of runs";
+        return Err(refusal(StatusCode::NOT_FOUND, why));
+    };
+    let done = aside(move || match &edit.throw_away {
+        Some(given) if *given == name => throw_away(&path, &name, &top),
+        Some(_) => Err("give the name of the run to throw it away".to_owned()),
+        None => {
+            let file = path.join(FILE);
+            let words = read(&file).and_then(|text| serde_json::from_str(&text).ok());
+            let words = edit.changed(words.unwrap_or_default())?;
+            let text = serde_json::to_string_pretty(&words).map_err(|error| error.to_string())?;
+            write_whole(&file, text.as_bytes()).map_err(|error| error.to_string())?;
+            Ok(json!({ "notes": words }))
+        }
+    });
+    let done = done.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
+    on_catalogue(shared, super::Catalogue::look_again).await?;
+    Ok(json_of(&done))
+}
+
+/// Moves a run to the trash.
+fn throw_away(path: &Path, name: &str, top: &Path) -> Result<Value, String> {
+    if path == top {
+        return Err(format!(
+            "{name} is the folder that is served; serve the one above it to throw it away"
+        ));
+    }
+    // A training holds this file.
+    let held = std::fs::File::open(path.join("lock"))
+        .is_ok_and(|file| matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock)));
+    if held {
+        return Err(format!("{name} is running; end its training first"));
+    }
+    let trash = top.join(TRASH);
+    std::fs::create_dir_all(&trash).map_err(|error| format!("{}: {error}", trash.display()))?;
+    let plain = name.replace(['/', '\\'], "_");
+    let free = |number: u32| -> PathBuf {
+        trash.join(if number == 1 { plain.clone() } else { format!("{plain}-{number}") })
+    };
+    let to = (1..10_000).map(free).find(|to| !to.exists()).ok_or("the trash is full")?;
+    std::fs::rename(path, &to).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(json!({ "moved_to": to.display().to_string() }))
+}
