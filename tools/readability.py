@@ -54,9 +54,10 @@ def measure(text):
     return [count for count in words if count > 3], sum(len(line) > WIDEST for line in lines)
 
 
-def row(name, text):
-    """A line of the table."""
-    words, wide = measure(text)
+def row(name, text, wide=None):
+    """A line of the table; `wide` where the lines are others than the text's."""
+    words, found = measure(text)
+    wide = found if wide is None else wide
     mean = sum(words) / len(words) if words else 0.0
     over = sum(count > 25 for count in words)
     print(f"| {name} | {len(words)} | {mean:.1f} | {max(words, default=0)} | {over} | {wide} |")
@@ -86,6 +87,20 @@ def help_of(program):
             yield f"hasard {command} --help", done.stdout
 
 
+def descriptions(text):
+    """A help as paragraphs of a page: what each flag, argument or command does, its wrapped lines joined; no usage, defaults or examples."""
+    parts = [[]]
+    for line in text.split("\nExamples:")[0].splitlines():
+        begins = re.match(r"\s{0,8}(-{1,2}[A-Za-z][^\s]*|\[?<[^\s]*|[a-z][a-z-]+(?=\s{2,}))((,? |=| \[?)[-<\[][^\s]*)*(\s{2,}|$)", line)
+        item = re.match(r"\s*- ", line)
+        if not line.strip() or line.startswith("Usage:") or begins or item:
+            parts.append([])
+        rest = "" if line.startswith("Usage:") else line[begins.end() :] if begins else line[item.end() :] if item else line
+        parts[-1].append(rest.strip())
+    whole = (re.sub(r"\[(default|aliases|alias|possible values): [^\]]*\]", "", " ".join(part)).strip() for part in parts)
+    return "\n\n".join(part for part in whole if part)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--at", metavar="COMMIT")
@@ -96,9 +111,9 @@ def main():
     if args.help_of:
         texts = list(help_of(args.help_of))
         for name, text in texts if args.each else []:
-            row(name, text)
-        # Each description of a flag stands alone.
-        row("help of all commands", "\n\n".join(re.sub(r"\n +", "\n\n", text) for _, text in texts))
+            row(name, descriptions(text), sum(len(line) > WIDEST for line in text.splitlines()))
+        lines = [line for _, text in texts for line in text.splitlines()]
+        row("help of all commands", "\n\n".join(descriptions(text) for _, text in texts), sum(len(line) > WIDEST for line in lines))
         return
     groups = {}
     for name, text in pages(args.at):

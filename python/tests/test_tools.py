@@ -87,6 +87,14 @@ def test_readability_counts_sentences_of_prose_alone():
     assert tool("readability").measure("word " * 40)[1] == 1
 
 
+def test_readability_joins_the_wrapped_lines_of_a_help():
+    text = "Do one thing\n\nUsage: hasard x [OPTIONS]\n\nOptions:\n      --size <WxH>\n          Frame size in so many\n          pixels. And more words here\n"
+    text += "\n          [default: 4]\n\n  -o, --out <FILE>  File that is written, and the\n                    folder of it\n\nExamples:\n  hasard x a b c d e\n"
+    readability = tool("readability")
+    assert readability.descriptions(text).split("\n\n")[2:] == ["Frame size in so many pixels. And more words here", "File that is written, and the folder of it"]
+    assert readability.measure(readability.descriptions(text))[0] == [6, 4, 9]
+
+
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib")
 @pytest.mark.parametrize("recipe", sorted((ROOT / "python/examples").glob("*.py")), ids=lambda path: path.stem)
 def test_a_recipe_names_the_extra_that_has_all_that_it_imports(recipe):
