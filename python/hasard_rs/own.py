@@ -11,8 +11,6 @@ from typing import Any
 from hasard_rs import _core
 from hasard_rs.errors import InvalidOption
 
-_LARGEST = 256 << 10
-
 
 @dataclass(frozen=True)
 class OwnScenario:
@@ -78,16 +76,8 @@ def from_text(text: str, path: str = "scenario.toml") -> OwnScenario:
 
 def from_file(path: str | os.PathLike[str]) -> OwnScenario:
     """Reads the scenario's file at `path`. Returns the scenario. Raises InvalidOption with the first mistake, its line and column."""
-    place = Path(path)
-    try:
-        with place.open("rb") as file:
-            content = file.read(_LARGEST + 1)
-        if len(content) > _LARGEST:
-            raise InvalidOption(f"{place}: larger than the {_LARGEST >> 10} KiB that a scenario's file may have")
-        text = content.decode("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidOption(f"{place}: cannot be read: {error}; `hasard new NAME` writes a file to begin with") from None
-    return from_text(text, os.fspath(place))
+    place = os.fspath(Path(path))
+    return from_text(_core.read_scenario(place), place)
 
 
 def from_dict(table: dict[str, Any], path: str = "scenario.toml") -> OwnScenario:

@@ -31,6 +31,15 @@ pub fn check_scenario(text: &str) -> Vec<(usize, usize, bool, String)> {
     mistakes.map(|mistake| (mistake.line, mistake.column, mistake.warning, mistake.text)).collect()
 }
 
+/// read_scenario(path) -> str
+///
+/// Returns the text of a scenario's file, and beneath it the maps that it names in other files.
+/// Raises InvalidOption.
+#[pyfunction]
+pub fn read_scenario(py: Python<'_>, path: std::path::PathBuf) -> PyResult<String> {
+    own::read_text(&path).map_err(|error| raise(py, &error))
+}
+
 /// register_scenario(path, text) -> list[str]
 ///
 /// Makes the environments of a scenario's text known and returns their ids, without `hasard/`.

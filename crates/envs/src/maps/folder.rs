@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex};
 const MAP: &str = "MAP01";
 
 /// Editor numbers of the starts of further players, for whom no scenario has a place.
-const FURTHER_PLAYERS: std::ops::RangeInclusive<i32> = 2..=4;
+pub(crate) const FURTHER_PLAYERS: std::ops::RangeInclusive<i32> = 2..=4;
 
 /// Where maps come from.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@
 
 mod auto;
 mod engine_file;
-mod files;
+pub(crate) mod files;
 pub(crate) mod folder;
 
 pub use auto::{ask, find_iwad, find_maps};

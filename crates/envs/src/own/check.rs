@@ -106,7 +106,7 @@ fn appears(plan: &Plan, of: Of) -> bool {
     });
     let drawn = match &plan.map {
         MapPlan::Tiles(tiles) => tiles.kinds.iter().filter_map(|kind| kind.thing).any(asked),
-        MapPlan::BuiltIn(..) => of.kinds != 0,
+        MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => of.kinds != 0,
     };
     spawned || drawn
 }
@@ -127,7 +127,7 @@ fn harmful(plan: &Plan, zones: u32) -> bool {
             let kind = &tiles.kinds[usize::from(*tile)];
             kind.damage.is_some() && kind.zone.is_some_and(|zone| zones >> zone & 1 == 1)
         }),
-        MapPlan::BuiltIn(..) => true,
+        MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => true,
     }
 }
 

@@ -6,6 +6,7 @@ mod fields;
 mod generate;
 mod intern;
 mod layers;
+mod map_file;
 mod mistakes;
 mod model;
 mod opening;

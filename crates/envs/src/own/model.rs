@@ -50,6 +50,8 @@ pub(super) enum MapPlan {
     Tiles(Tiles),
     /// That of a built-in scenario at a level.
     BuiltIn(crate::Scenario, u8),
+    /// That of a WAD or of a UDMF text.
+    Drawn(std::sync::Arc<hasard_engine::map::MapSource>),
 }
 
 /// A map of square tiles.

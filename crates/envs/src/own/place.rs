@@ -1,5 +1,6 @@
 //! Files of scenarios where ids stand: `my_task.toml`, or `my_task.toml#2` for its second level.
 
+use super::map_file;
 use super::task::register;
 use crate::{EnvError, EnvId};
 use std::io::Read;
@@ -15,7 +16,7 @@ pub fn is_file(text: &str) -> bool {
     Path::new(path).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
-/// The text of a scenario's file.
+/// The text of a scenario's file, and of the maps that it names in other files.
 ///
 /// # Errors
 /// One line that names the file and what is wrong with it.
@@ -34,14 +35,16 @@ pub fn read_text(path: &Path) -> Result<String, EnvError> {
             LARGEST_TEXT >> 10
         )));
     }
-    String::from_utf8(bytes).map_err(|error| {
+    let text = String::from_utf8(bytes).map_err(|error| {
         let line = error.as_bytes()[..error.utf8_error().valid_up_to()]
             .iter()
             .filter(|byte| **byte == b'\n')
             .count()
             + 1;
         wrong(format!("line {line} is no UTF-8 text; save the file as UTF-8"))
-    })
+    })?;
+    // A run needs nothing but the text: the map comes with it.
+    map_file::with_maps(text, path.parent().unwrap_or(Path::new(""))).map_err(wrong)
 }
 
 /// Reads and registers the scenario of a file, and gives the environment that `text` names:

@@ -1,7 +1,8 @@
-//! Reads `[map]`: tiles drawn with letters, the map of a built-in scenario, or one made anew at
-//! each reset.
+//! Reads `[map]`: tiles drawn with letters, the map of a built-in scenario, of a file, or one made
+//! anew at each reset.
 
 use super::fields::{Fields, wholes};
+use super::map_file;
 use super::mistakes::{Mistakes, excerpt, unknown};
 use super::model::{Generate, GenerateKind, MOST_ZONES, MapPlan, TileKind, Tiles, Zone};
 use super::textures;
@@ -25,6 +26,9 @@ pub(super) fn map(
     let mut fields = Fields::of(node, "[map]", mistakes);
     let ascii = fields.text("ascii", mistakes);
     let built_in = fields.text("builtin", mistakes);
+    let wad = fields.text("wad", mistakes);
+    let udmf = fields.text("udmf", mistakes);
+    let files = fields.node("files");
     let generate = fields.node("generate");
     let side = fields.whole("tile", 32, 512, mistakes).unwrap_or(64) as i32;
     let level = fields.whole("level", 1, 3, mistakes).unwrap_or(1) as u8;
@@ -32,11 +36,14 @@ pub(super) fn map(
     fields.finish(mistakes);
     let given = usize::from(ascii.is_some())
         + usize::from(built_in.is_some())
+        + usize::from(wad.is_some())
+        + usize::from(udmf.is_some())
         + usize::from(generate.is_some());
     if given != 1 {
         mistakes.add(
             node.at,
-            "[map] needs one of: ascii = \"\"\"...\"\"\", builtin = \"RemedyRush\", [map.generate]",
+            "[map] needs one of: ascii = \"\"\"...\"\"\", builtin = \"RemedyRush\", wad = \"x.wad#MAP01\", \
+             udmf = \"x.udmf\", [map.generate]",
         );
         return None;
     }
@@ -46,6 +53,9 @@ pub(super) fn map(
             mistakes.add(at, unknown("scenario", name, Scenario::ALL.map(Scenario::name)));
         }
         return found.map(|scenario| MapPlan::BuiltIn(scenario, level));
+    }
+    if let Some(named) = wad.or(udmf) {
+        return map_file::drawn(named, files, mistakes);
     }
     let mut kinds = vec![usual('#'), usual('.'), usual('@'), usual(' ')];
     if let Some(legend) = legend {

@@ -13,6 +13,7 @@ use crate::scenarios::{AnyRules, ScenarioFile, ScenarioSpec, Setting, Task};
 use crate::spaces::action::Controls;
 use crate::{CostTerm, EnvError, RuleSet, Scenario};
 use hasard_engine::map::{Map, MapSource};
+use hasard_engine::world::World;
 use std::sync::Arc;
 
 /// Most levels of a file.
@@ -146,9 +147,15 @@ fn try_map(plan: &Plan, mistakes: &mut Mistakes) {
         Map::build(&source, &plan.name, &[])
             .map_err(|error| EnvError::Map { why: format!("the map cannot be built: {error}") })
     });
-    match built.and_then(|map| Program::new(plan.clone(), &map, &[])) {
-        Ok(_) => {}
-        Err(error) => mistakes.add(0, error.to_string()),
+    let ready = built.and_then(|map| {
+        Program::new(plan.clone(), &map, &[])?;
+        let world = World::new(Arc::new(map), 0);
+        (!world.players.is_empty()).then_some(()).ok_or_else(|| EnvError::Map {
+            why: "the map has no player start; add a thing of type 1".to_string(),
+        })
+    });
+    if let Err(error) = ready {
+        mistakes.add(0, error.to_string());
     }
 }
 
@@ -169,6 +176,7 @@ fn map_of(plan: &Plan) -> Result<MapSource, EnvError> {
         MapPlan::BuiltIn(scenario, level) => {
             Ok(scenario.task.map(Setting::new(RuleSet::Paper, false, *level)))
         }
+        MapPlan::Drawn(source) => Ok(source.as_ref().clone()),
     }
 }
 

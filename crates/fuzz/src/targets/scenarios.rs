@@ -41,6 +41,7 @@ pub const SCENARIO: Target = Target {
         "[hard]\n",
         "[rules.tables]\n",
         "goal = \"wander\"\n",
+        "udmf = \"\"\"vertex { x = 0; y = 0; }\"\"\"\n",
         "\"\"\"",
     ],
     repair: nothing_to_repair,

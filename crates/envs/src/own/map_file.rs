@@ -1,0 +1,111 @@
+//! Maps in files of their own: `wad = "x.wad#MAP01"` and `udmf = "x.udmf"`. The map is laid beneath
+//! the scenario's text, as `[map.files]`, when the file is read: so a run, an agent and an episode
+//! keep it with the rest, and the hash is of both.
+
+use super::mistakes::{Mistakes, excerpt};
+use super::model::MapPlan;
+use super::tree::{self, Node, Value};
+use crate::maps::files::read as read_map_file;
+use crate::maps::folder::FURTHER_PLAYERS;
+use hasard_engine::map::udmf;
+use hasard_engine::wad::Wad;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The map of a WAD whose name is not said.
+const FIRST_MAP: &str = "MAP01";
+
+/// Longest map that is laid beneath a text, bytes of UDMF.
+const LARGEST_MAP: usize = 8 << 20;
+
+/// A text with the maps that it names, which lie in `folder` or where their paths lead from there.
+///
+/// # Errors
+/// What is wrong with a map's file, in one line.
+pub(super) fn with_maps(text: String, folder: &Path) -> Result<String, String> {
+    // What is wrong with the text is for its reader to say, with line and column.
+    let root = tree::parse(&text, &mut Mistakes::new(&text));
+    let mut named = Vec::new();
+    find(&root, &mut named);
+    let is_laid = root.get("map").is_some_and(|map| map.node.get("files").is_some());
+    if named.is_empty() || is_laid {
+        return Ok(text);
+    }
+    let mut whole = format!("{}\n\n[map.files]\n", text.trim_end());
+    for (key, place) in named {
+        let written = read_place(key, place, folder)
+            .map_err(|why| format!("[map] {key} = \"{}\": {why}", excerpt(place)))?;
+        let name = place.replace('\\', "\\\\").replace('"', "\\\"");
+        whole += &format!("\"{name}\" = '''\n{written}'''\n");
+    }
+    Ok(whole)
+}
+
+/// The files that the `map` tables of a text name, each once.
+fn find<'a>(node: &'a Node, named: &mut Vec<(&'static str, &'a str)>) {
+    let Value::Table(entries) = &node.value else { return };
+    for entry in entries {
+        if entry.key == "map" {
+            for key in ["wad", "udmf"] {
+                let place = entry.node.get(key).and_then(|entry| entry.node.text());
+                let place = place.filter(|place| !is_inline(place) && !place.contains('\n'));
+                named.extend(place.map(|place| (key, place)).filter(|one| !named.contains(one)));
+            }
+        }
+        find(&entry.node, named);
+    }
+}
+
+/// The map at a place, written as UDMF.
+fn read_place(key: &str, place: &str, folder: &Path) -> Result<String, String> {
+    let wrong = |error: &dyn std::fmt::Display| error.to_string();
+    let (path, name) = match place.rsplit_once('#') {
+        Some((path, name)) if key == "wad" => (path, name),
+        _ => (place, FIRST_MAP),
+    };
+    let bytes = read_map_file(&folder.join(path)).map_err(|error| wrong(&error))?;
+    let wad;
+    let map_text = if key == "wad" {
+        wad = Wad::read(&bytes).map_err(|error| wrong(&error))?;
+        wad.map_text(name).map_err(|error| wrong(&error))?
+    } else {
+        &bytes
+    };
+    let source = udmf::read(map_text).map_err(|error| wrong(&error))?;
+    let written = udmf::write(&source);
+    if written.len() > LARGEST_MAP || written.contains("'''") {
+        return Err("larger than the 8 MiB that a task's map may have".to_string());
+    }
+    Ok(written)
+}
+
+/// Whether a text is a map itself rather than the path of one.
+fn is_inline(text: &str) -> bool {
+    text.contains('{')
+}
+
+/// The plan of a map that `named` says the place of, or is; `files` are what was laid beneath.
+pub(super) fn drawn(
+    (named, at): (&str, usize),
+    files: Option<&Node>,
+    mistakes: &mut Mistakes,
+) -> Option<MapPlan> {
+    let inline = is_inline(named).then_some(named);
+    let Some(text) = inline.or_else(|| files?.get(named)?.node.text()) else {
+        mistakes.add(
+            at,
+            format!("the map \"{}\" is in another file: give the task as a file beside it, or its UDMF text here", excerpt(named)),
+        );
+        return None;
+    };
+    match udmf::read(text.as_bytes()) {
+        Ok(mut source) => {
+            source.things.retain(|thing| !FURTHER_PLAYERS.contains(&thing.kind));
+            Some(MapPlan::Drawn(Arc::new(source)))
+        }
+        Err(error) => {
+            mistakes.add(at, format!("this map cannot be read: {error}"));
+            None
+        }
+    }
+}
