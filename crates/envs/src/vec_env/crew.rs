@@ -2,7 +2,7 @@
 
 use super::VecOptions;
 use super::handover::{Lanes, Slot};
-use super::job::Task;
+use super::job::{Task, visited};
 use super::lane::{Lane, LaneSlices, Manner, Outbox};
 use super::worker::{self, Shared};
 use crate::{Batch, EnvError};
@@ -22,10 +22,13 @@ pub(super) enum Crew {
 
 impl Crew {
     /// Hires as many threads as the options say.
-    pub fn new(lanes: Vec<Lane>, options: VecOptions) -> Result<Crew, EnvError> {
+    pub fn new(lanes: Vec<Lane>, options: VecOptions, tasks: usize) -> Result<Crew, EnvError> {
         let slots = || 0..=options.groups;
-        let manner =
-            Manner { autoreset: options.autoreset, final_observations: options.final_observations };
+        let manner = Manner {
+            autoreset: options.autoreset,
+            final_observations: options.final_observations,
+            tasks,
+        };
         if options.threads == 0 {
             return Ok(Crew::Caller { lanes, ready: slots().map(|_| None).collect(), manner });
         }
@@ -118,9 +121,19 @@ impl Crew {
 
 /// Steps a batch in the caller's thread.
 fn step(lanes: &mut [Lane], batch: &mut Batch, task: &Task, manner: Manner, outbox: &mut Outbox) {
+    let count = task.lanes.count();
     let mut slices = LaneSlices::of(batch);
-    for index in 0..task.lanes.count() {
-        let own = slices.cut(task.lanes.count() - index);
+    if manner.tasks == 1 {
+        for index in 0..count {
+            let own = slices.cut(count - index);
+            task.job.run(&mut lanes[task.lanes.lane(index)], index, manner, own, outbox);
+        }
+        return;
+    }
+    let mut all: Vec<_> = (0..count).map(|index| Some(slices.cut(count - index))).collect();
+    for number in 0..count {
+        let index = visited(number, count, manner.tasks);
+        let own = all[index].take().expect("each place is visited once");
         task.job.run(&mut lanes[task.lanes.lane(index)], index, manner, own, outbox);
     }
 }

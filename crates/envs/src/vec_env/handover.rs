@@ -16,7 +16,7 @@
 //! The safe twin is the batch of worlds without threads, which slices the same buffers by the
 //! borrow checker's rules; tests compare both.
 
-use super::job::{Chosen, Job, Task};
+use super::job::{Chosen, Job, Task, visited};
 use super::lane::{Lane, LaneSlices};
 use crate::Batch;
 use std::cell::UnsafeCell;
@@ -190,6 +190,7 @@ impl Slot {
     pub fn claim(
         &self,
         lanes: &Lanes,
+        tasks: usize,
         work: impl FnOnce(usize, &mut Lane, LaneSlices, &Job),
     ) -> bool {
         // Looking first keeps the counter from rising for ever while there is nothing to do.
@@ -199,6 +200,8 @@ impl Slot {
         let Some((index, count)) = claimed(self.next.fetch_add(1, Ordering::AcqRel)) else {
             return false;
         };
+        // A permutation of the batch's places, so each is still claimed once.
+        let index = visited(index, count, tasks);
         // SAFETY: the number was seen with `Acquire`, so the contents are written; until this lane
         // is done they stay in the slot and are only read.
         let contents = unsafe { &*self.contents.get() };

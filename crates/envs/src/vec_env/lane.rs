@@ -159,6 +159,8 @@ fn unreported(env: &dyn Environment, episode: &Episode) -> Option<String> {
 pub(super) struct Manner {
     pub autoreset: Autoreset,
     pub final_observations: FinalObservations,
+    /// Tasks that the lanes take in turn.
+    pub tasks: usize,
 }
 
 /// One environment of the batch. Its episodes follow from the batch's seed and its own number

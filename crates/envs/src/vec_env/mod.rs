@@ -99,7 +99,7 @@ impl VecEnv {
         options: VecOptions,
         mut make: impl FnMut(usize, usize) -> Result<Box<dyn Environment>, EnvError>,
     ) -> Result<VecEnv, EnvError> {
-        let mut worlds = VecEnv::from_fn(options, |lane| {
+        let mut worlds = VecEnv::of_tasks(options, mixture.tasks().len(), |lane| {
             let task = mixture.task_of(options.first_lane.wrapping_add(lane as u64));
             Ok(mixture.lane(task, make(task, lane)?))
         })?;
@@ -124,6 +124,15 @@ impl VecEnv {
     /// actions, shape of observations, cost terms and statistics.
     pub fn from_fn(
         options: VecOptions,
+        make: impl FnMut(usize) -> Result<Box<dyn Environment>, EnvError>,
+    ) -> Result<VecEnv, EnvError> {
+        VecEnv::of_tasks(options, 1, make)
+    }
+
+    /// A batch whose lanes take so many tasks in turn.
+    fn of_tasks(
+        options: VecOptions,
+        tasks: usize,
         mut make: impl FnMut(usize) -> Result<Box<dyn Environment>, EnvError>,
     ) -> Result<VecEnv, EnvError> {
         options.check()?;
@@ -147,7 +156,7 @@ impl VecEnv {
             extent,
             mixture: None,
             options,
-            crew: Crew::new(lanes, options)?,
+            crew: Crew::new(lanes, options, tasks)?,
             resting: vec![false; options.lanes],
             kept: slots().map(|_| None).collect(),
             failed: None,

@@ -43,7 +43,7 @@ impl Shared {
                     .append(&mut outbox);
             }
         };
-        while self.slots[slot].claim(&self.lanes, work) {}
+        while self.slots[slot].claim(&self.lanes, self.manner.tasks, work) {}
     }
 }
 
