@@ -12,7 +12,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, Any, cast
 
 from hasard_rs._core import Batch, Worlds, __version__
@@ -84,7 +83,7 @@ def make_vec(env_id: str | Sequence[str], num_envs: int = 1, **kwargs: Any) -> V
     """
     if not hasattr(_gymnasium, "make_vec") or not hasattr(_gymnasium.vector, "AutoresetMode"):
         raise ImportError("make_vec needs Gymnasium 1.1 or newer: pip install -U gymnasium; make and Worlds work with older ones")
-    if not isinstance(env_id, (str, os.PathLike)):
+    if isinstance(env_id, (list, tuple)):
         tasks = [_task(one) for one in env_id]
         if not tasks:
             raise InvalidOption("a batch needs a task; the list of ids is empty")

@@ -50,7 +50,10 @@ class Shared:
         self.max_episode_steps: int = worlds.episode_steps
         self.extent: tuple[int, int, int, int] | None = worlds.extent
         names: list[Any] = [scenario_and_level(env_id) for env_id in given.env_id.split(",")]
-        self.scenario_name, self.level = tuple(zip(*names, strict=True)) if mixed else names[0]
+        self.scenario_name: Any = names[0][0]
+        self.level: Any = names[0][1]
+        if mixed:
+            self.scenario_name, self.level = zip(*names, strict=True)
         self.hard_constraint, self.frame_skip = given.hard_constraint, given.frame_skip
 
     @property

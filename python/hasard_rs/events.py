@@ -4,15 +4,91 @@ from __future__ import annotations
 
 import enum
 
-from hasard_rs import _core
 
-_NAMES = _core.event_names()
+class Event(enum.IntEnum):
+    """What happened: the field `kind` of an event."""
 
-Event = enum.IntEnum("Event", {name.upper(): number for name, number in _NAMES["kinds"].items()})  # type: ignore[misc]
-Event.__doc__ = "What happened: PICKUP, DAMAGE, DEATH, LANDING or SHOT, the field `kind` of an event."
+    PICKUP = 0
+    DAMAGE = 1
+    DEATH = 2
+    LANDING = 3
+    SHOT = 4
 
-Thing = enum.IntEnum("Thing", _NAMES["things"])  # type: ignore[misc]
-Thing.__doc__ = "Every thing by its name, such as HealthBonus, Player or Zombieman: the fields `what` and `by` of an event."
 
-Cause = enum.IntEnum("Cause", {name.upper(): number for name, number in _NAMES["causes"].items()})  # type: ignore[misc]
-Cause.__doc__ = "What hurt: FLOOR, FALL, BULLET, ROCKET, BLAST, BARREL or SCRIPT, the field `cause` of an event."
+class Cause(enum.IntEnum):
+    """What hurt: the field `cause` of an event."""
+
+    FLOOR = 0
+    FALL = 1
+    BULLET = 2
+    ROCKET = 3
+    BLAST = 4
+    BARREL = 5
+    SCRIPT = 6
+
+
+class Thing(enum.IntEnum):
+    """Every thing: the fields `what` and `by` of an event."""
+
+    Player = 0
+    HealthBonus = 1
+    Stimpack = 2
+    Medikit = 3
+    ArmorBonus = 4
+    RocketAmmo = 5
+    Shell = 6
+    Cell = 7
+    Clip = 8
+    Infrared = 9
+    BlurSphere = 10
+    Allmap = 11
+    Backpack = 12
+    RadSuit = 13
+    YellowCard = 14
+    BlueSkull = 15
+    Pistol = 16
+    Shotgun = 17
+    SuperShotgun = 18
+    Chaingun = 19
+    RocketLauncher = 20
+    PlasmaRifle = 21
+    Bfg9000 = 22
+    Cacodemon = 23
+    ZombieMan = 24
+    ShotgunGuy = 25
+    ChaingunGuy = 26
+    DoomImp = 27
+    Demon = 28
+    Revenant = 29
+    LostSoul = 30
+    ExplosiveBarrel = 31
+    Rocket = 32
+    RocketSmokeTrail = 33
+    PlasmaBall = 34
+    BfgBall = 35
+    BulletPuff = 36
+    Blood = 37
+    TechLamp = 38
+    TechLamp2 = 39
+    ShortRedColumn = 40
+    ShortGreenColumn = 41
+    HeartColumn = 42
+    TechPillar = 43
+    TorchTree = 44
+    Stalagtite = 45
+    BigTree = 46
+    Gibs = 47
+    GibbedMarine = 48
+    SmallBloodPool = 49
+    BrainStem = 50
+    PatrolPoint = 51
+    DeadMarine = 52
+    DeadZombieMan = 53
+    DeadShotgunGuy = 54
+    Candlestick = 55
+    ShortBlueTorch = 56
+    ShortGreenTorch = 57
+    ShortRedTorch = 58
+    ColonGibs = 59
+    BurningTop = 60
+    BurningDebris = 61

@@ -94,3 +94,10 @@ def test_raw_worlds_have_rows_and_offsets() -> None:
     quiet = hasard_rs.Worlds("RemedyRushLevel1-v0", 4, resolution="64x48")
     quiet.reset(0)
     assert all(len(quiet.step(np.tile([1, 1, 1, 0], (4, 1))).events) == 0 for _ in range(100))
+
+
+def test_the_numbers_are_the_engines() -> None:
+    names = hasard_rs._core.event_names()
+    assert {kind.name.lower(): int(kind) for kind in Event} == names["kinds"]
+    assert {cause.name.lower(): int(cause) for cause in Cause} == names["causes"]
+    assert {thing.name: int(thing) for thing in Thing} == names["things"]

@@ -2,6 +2,7 @@
 
 use crate::args::CheckArgs;
 use crate::failure::{Failure, Outcome};
+use hasard_engine::world::ActorKind;
 use hasard_envs::{Env, EnvOptions, own};
 use serde_json::json;
 
@@ -47,7 +48,9 @@ pub fn run(args: &CheckArgs) -> Outcome {
             hasard_media::Picture::from_rgb(width, height, pixels).map_err(Failure::bad)?;
         hasard_media::png::write(&picture, out).map_err(Failure::bad)?;
     }
-    let things = env.world().living().count() - 1;
+    // What the map shows: not the agent, nor the places that monsters walk to.
+    let shown = |kind: ActorKind| !matches!(kind, ActorKind::Player | ActorKind::PatrolPoint);
+    let things = env.world().living().filter(|(_, actor)| shown(actor.kind)).count();
     let ids: Vec<String> = scenario.environments().map(|id| id.to_string()).collect();
     let drawn = args.out.as_ref().map(|out| out.display().to_string());
     if args.json {
@@ -59,8 +62,9 @@ pub fn run(args: &CheckArgs) -> Outcome {
     } else {
         let drawn = drawn.map_or(String::new(), |out| format!("; its map is drawn in {out}"));
         say!(
-            "{file}: can be played as {}; {things} things at the start of seed {}{drawn}",
+            "{file}: can be played as {}; {things} {} at the start of seed {}{drawn}",
             ids.join(", "),
+            if things == 1 { "thing" } else { "things" },
             args.seed
         );
     }

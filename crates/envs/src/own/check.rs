@@ -15,6 +15,22 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
                 .warn(when.at, format!("this never happens: {}", why(first, names, when.trigger)));
         }
     }
+    warn_of_conditions(plans, names, mistakes);
+    let starts = |plan: &Plan| match &plan.map {
+        MapPlan::Tiles(tiles) => {
+            let mut here = tiles.tiles.iter().map(|tile| &tiles.kinds[usize::from(*tile)]);
+            // On a map that is made anew the agent appears anywhere.
+            let anywhere = plan.player.place.is_some() || tiles.generate.is_some();
+            anywhere || here.any(|kind| kind.start)
+        }
+        MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => true,
+    };
+    if !plans.iter().all(starts) {
+        mistakes.warn(
+            0,
+            "no tile is a start: the agent stands in the south-west; draw an @, or write [player] in = \"free\"",
+        );
+    }
     for (index, spawn) in first.spawns.iter().enumerate() {
         let used = |plan: &Plan| {
             let spawn = plan
@@ -43,6 +59,25 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
         };
         if !plans.iter().any(charged) {
             mistakes.warn(0, format!("cost term {} is charged by no [[when]]", term.name));
+        }
+    }
+}
+
+/// Warns of conditions on counters that nothing changes: a counter is 0 then, whatever happens.
+fn warn_of_conditions(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
+    let changes = |counter: u8| {
+        let of = move |(of, _): &(u8, i32)| *of == counter;
+        let mut whens = plans.iter().flat_map(|plan| &plan.whens);
+        whens.any(|when| when.counts.iter().any(of) || when.sets.iter().any(of))
+    };
+    let first = plans.first().into_iter().flat_map(|plan| &plan.whens);
+    for when in first {
+        for (counter, _) in when.conditions.iter().filter(|(counter, _)| !changes(*counter)) {
+            let name = names.counters.get(usize::from(*counter)).map_or("", |name| name);
+            mistakes.warn(
+                when.at,
+                format!("nothing counts {name}, so it is always 0: is its name right in `if`?"),
+            );
         }
     }
 }

@@ -227,7 +227,7 @@ fn tile_kind(
     if !kind.rock && kind.ceiling < kind.floor[1] + 1 {
         mistakes.add(
             node.at,
-            format!("the ceiling ({}) must be above the floor ({})", kind.ceiling, kind.floor[1]),
+            format!("the ceiling ({}) must be above the floor ({}); a closed door is a floor a little below the ceiling", kind.ceiling, kind.floor[1]),
         );
     }
     kind

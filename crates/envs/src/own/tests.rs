@@ -212,3 +212,21 @@ fn names_of_the_benchmark_are_not_taken() {
     let refused = register("x.toml", &text).unwrap_err().to_string();
     assert!(refused.contains("is a scenario of the benchmark"), "{refused}");
 }
+
+/// A condition on a counter that nothing counts can never hold; without a start the agent stands
+/// anywhere.
+#[test]
+fn conditions_that_never_hold_and_a_missing_start_are_warned_of() {
+    let rest = "[[when]]\nevent = \"timer\"\nevery = 35\nreward = 1.0\ncount = \"stage\"\n\
+                [[when]]\nevent = \"timer\"\nevery = 70\nif = { stge = 2 }\nreward = 1.0\n";
+    let warned = |text: &str, words: &str| {
+        let checked = check(text);
+        assert!(checked.can_be_played(), "{:#?}", checked.mistakes);
+        checked.mistakes.iter().any(|one| one.warning && one.text.contains(words))
+    };
+    let text = corridor(rest);
+    assert!(warned(&text, "nothing counts stge"));
+    assert!(!warned(&text.replace("stge", "stage"), "nothing counts"));
+    assert!(!warned(&text, "no tile is a start"));
+    assert!(warned(&text.replace('@', "."), "no tile is a start"));
+}
