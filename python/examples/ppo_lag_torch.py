@@ -142,10 +142,10 @@ class PidMultipliers:
 def constraints_of(args: argparse.Namespace, envs: hasard_rs.VectorEnv) -> tuple[list[str | None], np.ndarray]:
     """Term and budget of each constraint; the term None is the scalar cost."""
     given = args.safety_budget or [str(envs.safety_budget)]
-    pairs = [text.rpartition("=") for text in given]
+    pairs, known = [text.rpartition("=") for text in given], [term.name for term in envs.cost_terms]
     for term, _, _ in pairs:
-        if term and term not in envs.cost_terms:
-            raise SystemExit(f"--safety-budget {term}=...: the cost terms are {', '.join(envs.cost_terms)}")
+        if term and term not in known:
+            raise SystemExit(f"--safety-budget {term}=...: the cost terms are {', '.join(known)}")
     return [term or None for term, _, _ in pairs], np.array([float(budget) for _, _, budget in pairs])
 
 
@@ -157,7 +157,7 @@ def main() -> None:
     device = torch.device(args.device)
     envs = hasard_rs.make_vec(args.env_id, args.num_envs, resolution="128x72", autoreset_mode="SameStep", infos="full")
     terms, budgets = constraints_of(args, envs)
-    columns = [None if term is None else list(envs.cost_terms).index(term) for term in terms]
+    columns = [None if term is None else [one.name for one in envs.cost_terms].index(term) for term in terms]
     frame_skip, episode_steps = envs.frame_skip, envs.max_episode_steps
     out = args.out or Path("runs") / f"{args.env_id.split('/')[-1]}-torch-seed{args.seed}"
     writer = SummaryWriter(str(out))

@@ -159,7 +159,8 @@ impl Pace {
 
 /// A report as a line of a log.
 fn line(report: &Report, seconds_left: f64) -> String {
-    let share = 100.0 * report.frames as f64 / report.total_frames.max(1) as f64;
+    // The last rollout may go beyond the end.
+    let share = (100.0 * report.frames as f64 / report.total_frames.max(1) as f64).min(100.0);
     let mut text = format!(
         "{} of {} frames ({share:.1} %), {} frames/s, {} left",
         grouped(report.frames),

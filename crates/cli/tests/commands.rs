@@ -473,7 +473,11 @@ fn people_are_met_half_way() {
         assert!(error.contains("runs/one") && error.contains("runs/more/two"), "{line}: {error}");
     }
     assert!(folder.refused("eval runs/onne").contains("did you mean runs/one?"));
-    assert!(folder.refused("record nothere").contains("neither an environment, a run nor a file"));
+    let nothing = folder.refused("record nothere");
+    assert!(nothing.contains("nothere is neither an environment, a run nor a file"), "{nothing}");
+    assert!(nothing.contains("`hasard envs`") && !nothing.contains("RemedyRush"), "{nothing}");
+    let nearly = folder.refused("record RemdyRushLevel1");
+    assert!(nearly.contains("did you mean RemedyRushLevel1-v0?"), "{nearly}");
     assert_eq!(
         folder.ok("render RemedyRushLevel1 --size 64x48 -o new/folder/a.png"),
         "new/folder/a.png: 64x48\nmade the folder new/folder\n"

@@ -8,7 +8,7 @@ use crate::places;
 use crate::settings;
 use crate::ticker::Ticker;
 use crate::zoo;
-use hasard_envs::{Env, EnvId, EnvOptions, FrameSize};
+use hasard_envs::{Env, EnvError, EnvId, EnvOptions, FrameSize, edit_distance};
 use hasard_media::episode::EpisodeFile;
 use hasard_media::shell::quote;
 use hasard_play::{Film, Recorder, Replay, Stage, Views};
@@ -93,8 +93,20 @@ pub fn run(args: &RecordArgs) -> Outcome {
         if let Err(error) = id.parse::<EnvId>()
             && !what.exists()
         {
+            // Of a word that is like no id the nearest says nothing.
+            let remedy = match error {
+                EnvError::UnknownId { nearest, .. }
+                    if edit_distance(&id, &nearest) <= 1 + nearest.len() / 3 =>
+                {
+                    format!("did you mean {nearest}?")
+                }
+                _ => {
+                    "`hasard envs` lists environments, and `hasard train ENV --out DIR` makes a run"
+                        .into()
+                }
+            };
             return Err(Failure::bad(format!(
-                "{}: is neither an environment, a run nor a file; {error}",
+                "{} is neither an environment, a run nor a file; {remedy}",
                 what.display()
             )));
         }

@@ -23,11 +23,11 @@ impl Bar {
 
     /// Shows a report.
     pub fn show(&self, report: &Report) {
-        // How long it takes is known from the first report on.
-        self.bar.set_style(style("{bar:24} {percent:>3} % {msg}  {eta} left"));
         self.bar.set_length(report.total_frames);
         self.bar.set_position(report.frames.min(report.total_frames));
         self.bar.set_message(line(report));
+        // How long it takes is known from the first report on, and not before it is shown.
+        self.bar.set_style(style("{bar:24} {percent:>3} % {msg}  {eta} left"));
     }
 
     /// Prints a line above the bar.
