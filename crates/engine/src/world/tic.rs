@@ -1,8 +1,9 @@
 //! One tic: who acts, in which order.
 
-use crate::world::state::actor::{Actor, ActorKind};
-use crate::world::state::command::Command;
+use crate::world::parts::actor::Actor;
+use crate::world::parts::command::Command;
 use crate::world::state::world::World;
+use crate::world::tables::kinds::ActorKind;
 use crate::world::tables::states::is_timed;
 
 impl World {

@@ -1,8 +1,8 @@
 //! What passes between a batch of worlds and its user.
 
 use crate::interface::buffer::Buffer;
-use crate::interface::environment::CostTerm;
 use crate::interface::happening::Happening;
+use crate::interface::step::CostTerm;
 
 /// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the
 /// caller and handed over for the time of a step, so that nothing is copied. Made by

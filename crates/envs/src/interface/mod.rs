@@ -4,3 +4,4 @@ pub mod batch;
 pub mod buffer;
 pub mod environment;
 pub mod happening;
+pub mod step;

@@ -1,6 +1,6 @@
 //! The facts of an environment, asked by id.
 
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::registry::scenario::{EnvId, Scenario};
 use crate::scenarios::common::rule_set::RuleSet;
 use crate::spaces::action::ActionSpace;

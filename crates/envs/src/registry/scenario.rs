@@ -1,7 +1,7 @@
 //! The registry: scenarios, levels and the ids that name them.
 
 use crate::error::{EnvError, excerpt};
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::scenarios;
 use crate::scenarios::common::rule_set::RuleSet;
 use crate::scenarios::common::spec::{ScenarioSpec, Setting};

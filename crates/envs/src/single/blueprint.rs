@@ -1,7 +1,7 @@
 //! What the environments of one id and one set of options share.
 
 use crate::error::EnvError;
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::options::EnvOptions;
 use crate::registry::facts;
 use crate::registry::scenario::EnvId;

@@ -2,8 +2,9 @@
 
 use crate::error::EnvError;
 use crate::interface::batch::{Episode, episode_costs};
-use crate::interface::environment::{CostTerm, Environment, Step};
+use crate::interface::environment::Environment;
 use crate::interface::happening::Happening;
+use crate::interface::step::{CostTerm, Step};
 use crate::options::EnvOptions;
 use crate::registry::scenario::EnvId;
 use crate::scenarios::common::outcome::MOST_TERMS;

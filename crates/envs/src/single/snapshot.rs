@@ -1,7 +1,7 @@
 //! A moment of an environment, to come back to.
 
 use crate::error::EnvError;
-use crate::interface::environment::Step;
+use crate::interface::step::Step;
 use crate::options::EnvOptions;
 use crate::registry::scenario::EnvId;
 use crate::scenarios::common::outcome::MOST_TERMS;

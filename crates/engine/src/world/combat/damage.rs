@@ -1,10 +1,11 @@
 //! Losing health: what reduces it, the thrust of a hit, pain, and death.
 
 use crate::math::{Angle, Fixed};
-use crate::world::state::actor::{Actor, ActorId, ActorKind};
-use crate::world::state::event::{DamageKind, Event};
+use crate::world::parts::actor::{Actor, ActorId};
+use crate::world::parts::event::Event;
 use crate::world::state::world::World;
 use crate::world::tables::info::ActorFlags;
+use crate::world::tables::kinds::{ActorKind, DamageKind};
 use crate::world::tables::states::{Phase, animation};
 
 /// Fastest thrust of one hit, map units per tic.

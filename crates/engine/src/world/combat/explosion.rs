@@ -1,10 +1,10 @@
 //! Blasts: what a bursting rocket or barrel does to everything around it.
 
 use crate::math::{Angle, Fixed};
-use crate::world::state::actor::ActorId;
-use crate::world::state::event::DamageKind;
+use crate::world::parts::actor::ActorId;
 use crate::world::state::world::World;
 use crate::world::tables::info::ActorFlags;
+use crate::world::tables::kinds::DamageKind;
 
 /// Damage at the centre of a blast, and the distance at which none is left.
 pub const BLAST: i32 = 128;

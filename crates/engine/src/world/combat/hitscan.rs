@@ -3,12 +3,13 @@
 
 use crate::map::{Blocks, SectorId};
 use crate::math::{Angle, Fixed};
-use crate::world::motion::sight::{Crossed, Path, WHOLE_PATH};
-use crate::world::player::weapon::Spread;
-use crate::world::state::actor::{ActorId, ActorKind};
-use crate::world::state::event::DamageKind;
+use crate::world::motion::sight::Path;
+use crate::world::parts::actor::ActorId;
+use crate::world::parts::crossing::{Crossed, WHOLE_PATH};
 use crate::world::state::world::World;
 use crate::world::tables::info::ActorFlags;
+use crate::world::tables::kinds::{ActorKind, DamageKind};
+use crate::world::tables::weapons::Spread;
 
 /// Within this distance weapons look for something to aim at, map units.
 const AIM_RANGE: i32 = 1024;

@@ -2,10 +2,10 @@
 
 use crate::math::{Angle, Fixed};
 use crate::world::motion::collision::Move;
-use crate::world::state::actor::{Actor, ActorKind};
-use crate::world::state::event::DamageKind;
+use crate::world::parts::actor::Actor;
 use crate::world::state::world::World;
 use crate::world::tables::info::ActorFlags;
+use crate::world::tables::kinds::{ActorKind, DamageKind};
 use crate::world::tables::states::Phase;
 
 /// Height of the muzzle for missiles above half the body's height: 4 lower than for bullets.
@@ -141,7 +141,7 @@ impl World {
 mod tests {
     use super::*;
     use crate::map::stone_room;
-    use crate::world::state::actor::ActorId;
+    use crate::world::parts::actor::ActorId;
 
     #[test]
     fn puffs_of_smoke_live_as_long_as_in_the_original() {

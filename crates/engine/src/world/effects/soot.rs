@@ -2,7 +2,8 @@
 
 use crate::map::{Line, SectorId, SideId, Vertex};
 use crate::math::Fixed;
-use crate::world::motion::collision::behind;
+use crate::world::parts::lines::behind;
+use crate::world::parts::soot::Soot;
 use crate::world::state::world::World;
 
 /// Most marks of a world; the oldest go first. An agent that fires all the time leaves some hundred
@@ -15,24 +16,6 @@ const REACH: Fixed = Fixed((39 << 16) / 2);
 
 /// Lines that a mark goes on along to either side; more than fit in its reach are tiny.
 const MOST_CORNERS: usize = 4;
-
-/// A mark on one side of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Soot {
-    /// The side.
-    pub side: SideId,
-    /// Its middle lies on the line, or before its start or beyond its end for what has gone on
-    /// around a corner.
-    pub x: Fixed,
-    /// As x.
-    pub y: Fixed,
-    /// Height of its middle.
-    pub z: Fixed,
-    /// Shown the other way round.
-    pub mirrored: bool,
-    /// Shown upside down.
-    pub upturned: bool,
-}
 
 impl World {
     /// Leaves soot on a line at its point nearest to (x, y), on the side where that lies.
@@ -152,7 +135,7 @@ mod tests {
     use super::*;
     use crate::map::stone_room;
     use crate::math::Angle;
-    use crate::world::state::actor::ActorKind;
+    use crate::world::tables::kinds::ActorKind;
 
     fn room() -> World {
         World::new(stone_room(200, [-256, -256, 256, 256], &[]), 1)

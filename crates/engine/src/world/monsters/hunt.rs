@@ -6,10 +6,11 @@
 //! hundreds of map units, because a direction once chosen is kept for up to 16 steps.
 
 use crate::math::{Angle, Fixed};
-use crate::world::monsters::patrol::Heading;
-use crate::world::motion::collision::{approximate_distance, for_each_line_across};
+use crate::world::motion::collision::approximate_distance;
 use crate::world::motion::movement::FLOAT_SPEED;
+use crate::world::parts::lines::for_each_line_across;
 use crate::world::state::world::World;
+use crate::world::tables::heading::Heading;
 use crate::world::tables::info::ActorFlags;
 use crate::world::tables::states::Phase;
 

@@ -3,9 +3,9 @@
 
 use crate::map::{Map, MapBuilder, Style};
 use crate::math::{Angle, Fixed, Rng};
-use crate::world::monsters::patrol::Heading;
-use crate::world::state::actor::ActorKind;
 use crate::world::state::world::World;
+use crate::world::tables::heading::Heading;
+use crate::world::tables::kinds::ActorKind;
 use crate::world::tables::states::Phase;
 use std::sync::Arc;
 

@@ -2,8 +2,8 @@
 
 use crate::math::Fixed;
 use crate::world::motion::collision::{PASSES, approximate_distance};
-use crate::world::state::actor::Actor;
-use crate::world::state::event::Event;
+use crate::world::parts::actor::Actor;
+use crate::world::parts::event::Event;
 use crate::world::state::world::World;
 use crate::world::tables::info::ActorFlags;
 

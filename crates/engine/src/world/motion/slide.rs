@@ -2,7 +2,7 @@
 
 use crate::map::Line;
 use crate::math::Fixed;
-use crate::world::motion::collision::{behind, stops};
+use crate::world::parts::lines::{behind, stops};
 use crate::world::state::world::World;
 
 /// No wall was hit: one above the whole move.

@@ -1,6 +1,7 @@
 //! The player's face on the status bar: it glances about, winces, grins and rages.
 
-use crate::world::state::command::Buttons;
+use crate::world::parts::command::Buttons;
+use crate::world::parts::face::Face;
 use crate::world::state::world::World;
 
 /// Tics between glances.
@@ -13,42 +14,6 @@ const GRIN_TICS: u32 = 70;
 const RAGE_AFTER_TICS: u32 = 70;
 /// A loss of more health than this in a tic is felt as an outcry.
 const MUCH_PAIN: i32 = 20;
-
-/// What the face shows, within the band of the player's health.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Face {
-    /// Looks right (0), ahead (1) or left (2): pictures `STFST` + band + this.
-    Glance(u8),
-    /// Cries out: `STFOUCH` + band.
-    Ouch,
-    /// Grins at a new weapon: `STFEVL` + band.
-    Grin,
-    /// Clenches its teeth in pain or rage: `STFKILL` + band.
-    Rage,
-    /// Dead: `STFDEAD0`.
-    Dead,
-}
-
-/// What the face remembers from tic to tic.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub struct FaceState {
-    /// What is shown.
-    pub shown: Face,
-    /// Tics left of it.
-    tics: u32,
-    /// Health at the last tic.
-    health: i32,
-    /// Tics of firing without a break.
-    firing_tics: u32,
-    /// A weapon was taken that the player did not have.
-    pub(in crate::world) grin: bool,
-}
-
-impl Default for FaceState {
-    fn default() -> FaceState {
-        FaceState { shown: Face::Glance(1), tics: 0, health: 0, firing_tics: 0, grin: false }
-    }
-}
 
 impl World {
     /// Band of a player's health for the face: 0 at 80 and more, 4 below 20.

@@ -1,8 +1,7 @@
 //! What players carry: what each item gives, and when it is refused.
 
-use crate::world::state::actor::ActorKind;
-use crate::world::state::player::Weapon;
 use crate::world::state::world::World;
+use crate::world::tables::kinds::{ActorKind, Weapon};
 use crate::world::tables::weapons::ammo;
 
 /// Tics of light amplification: 120 seconds.

@@ -1,7 +1,7 @@
 //! What happens when a player's move touches an item.
 
-use crate::world::state::actor::ActorId;
-use crate::world::state::event::Event;
+use crate::world::parts::actor::ActorId;
+use crate::world::parts::event::Event;
 use crate::world::state::world::World;
 use crate::world::tables::info::ActorFlags;
 

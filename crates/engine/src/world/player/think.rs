@@ -2,12 +2,12 @@
 //! body moves.
 
 use crate::math::{Angle, Fixed};
-use crate::world::player::view_height::VIEW_HEIGHT;
-use crate::world::state::actor::{Actor, ActorKind};
-use crate::world::state::command::{Buttons, Command};
-use crate::world::state::player::Player;
+use crate::world::parts::actor::Actor;
+use crate::world::parts::command::{Buttons, Command};
+use crate::world::parts::player::{Player, VIEW_HEIGHT};
 use crate::world::state::world::World;
 use crate::world::tables::info::ActorFlags;
+use crate::world::tables::kinds::ActorKind;
 
 /// Forward or backward command, walking and running, in command units.
 const FORWARD: [i32; 2] = [25, 50];

@@ -1,11 +1,9 @@
 //! The eye: its height above the feet, its recovery from steps and landings, and its bob.
 
 use crate::math::{Angle, Fixed};
-use crate::world::state::player::Player;
+use crate::world::parts::player::Player;
+use crate::world::parts::player::VIEW_HEIGHT;
 use crate::world::state::world::World;
-
-/// Height of the eye above the feet of an upright player.
-pub(crate) const VIEW_HEIGHT: Fixed = Fixed::from_int(41);
 
 /// Most that the bob swings from top to bottom.
 const LARGEST_BOB: Fixed = Fixed::from_int(16);

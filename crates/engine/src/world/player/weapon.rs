@@ -5,79 +5,20 @@
 //! later, and holding the button repeats the sequence without a tic between.
 
 use crate::math::{Angle, Fixed};
-use crate::world::state::actor::ActorKind;
-use crate::world::state::command::Buttons;
-use crate::world::state::event::Event;
-use crate::world::state::player::{PlayerSprite, Weapon};
+use crate::world::parts::command::Buttons;
+use crate::world::parts::event::Event;
+use crate::world::parts::hands::Hands;
+use crate::world::parts::hands::PUT_AWAY;
+use crate::world::parts::hands::WeaponState;
+use crate::world::parts::player::PlayerSprite;
 use crate::world::state::world::World;
-use crate::world::tables::weapons::Shot;
+use crate::world::tables::kinds::{ActorKind, Weapon};
+use crate::world::tables::weapons::{Shot, Spread};
 
-/// Height of the weapon layer when it is put away, screen units.
-const PUT_AWAY: Fixed = Fixed::from_int(128);
 /// Height at rest: 32.375.
 const AT_REST: Fixed = Fixed((32 << 16) + 0x6000);
 /// Raised or lowered per tic.
 const RAISE_PER_TIC: Fixed = Fixed::from_int(6);
-
-/// What the hands are doing.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub enum Hands {
-    /// Nothing is shown.
-    #[default]
-    Empty,
-    /// Bringing the weapon up.
-    Raising,
-    /// Ready to fire or to change the weapon.
-    Ready,
-    /// Putting the weapon away.
-    Lowering,
-    /// In the fire sequence.
-    Firing,
-}
-
-/// The state of the weapon layer and of the muzzle flash.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub struct WeaponState {
-    /// The weapon that comes next, if the player changes it.
-    pub pending: Option<Weapon>,
-    /// What the hands are doing.
-    pub hands: Hands,
-    /// Frame of the fire sequence.
-    step: u8,
-    /// Tics left of it.
-    tics: i16,
-    /// Height of the layer.
-    height: Fixed,
-    /// Sequence and frame of the muzzle flash.
-    flash: Option<(u8, u8)>,
-    /// Tics left of that frame.
-    flash_tics: i16,
-    /// Swing of the weapon, which follows the player's bob by at most 1 a tic.
-    swing: Fixed,
-    /// The button has been down since a ready weapon last saw it up. It counts as down at the
-    /// start, so that a weapon which wants a fresh press does not fire for a button held since
-    /// before.
-    attack_down: bool,
-    /// Shots since the press, the first not counted: only the first is accurate.
-    repeats: u32,
-}
-
-impl Default for WeaponState {
-    fn default() -> WeaponState {
-        WeaponState {
-            pending: None,
-            hands: Hands::Empty,
-            step: 0,
-            tics: 0,
-            height: PUT_AWAY,
-            flash: None,
-            flash_tics: 0,
-            swing: Fixed::ZERO,
-            attack_down: true,
-            repeats: 0,
-        }
-    }
-}
 
 impl World {
     /// Whether a player owns a weapon and the ammunition for a shot.
@@ -413,22 +354,4 @@ impl World {
         owner.sprites =
             [Some(PlayerSprite { sprite: info.sprite, frame, bright: false, x, y }), flash];
     }
-}
-
-/// How far bullets scatter: bits by which a triangular draw of -255..=255 is shifted.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(in crate::world) struct Spread {
-    /// Sideways, 0 for none: 18 gives 5.6 degrees at most, 19 twice that.
-    pub yaw_shift: u32,
-    /// Up and down too.
-    pub vertical: bool,
-}
-
-impl Spread {
-    /// Every bullet where the weapon points.
-    pub const NONE: Spread = Spread { yaw_shift: 0, vertical: false };
-    /// Sideways by 5.6 degrees at most.
-    pub const NARROW: Spread = Spread { yaw_shift: 18, vertical: false };
-    /// Sideways by 11.2 degrees, up and down by 7 degrees at most.
-    pub const WIDE: Spread = Spread { yaw_shift: 19, vertical: true };
 }

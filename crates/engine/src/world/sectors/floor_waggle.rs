@@ -3,9 +3,9 @@
 
 use crate::map::SectorId;
 use crate::math::Fixed;
-use crate::world::sectors::movers::Mover;
-use crate::world::sectors::waggle::Waggle;
-use crate::world::state::sector::Busy;
+use crate::world::parts::movers::Mover;
+use crate::world::parts::sector::Busy;
+use crate::world::parts::waggle::Waggle;
 use crate::world::state::world::World;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! The lights that a map starts by its sector specials.
 
 use crate::map::{Map, SectorId, special};
-use crate::world::sectors::lights::{Effect, PHASES};
+use crate::world::parts::lights::{Effect, PHASES};
 use crate::world::state::world::World;
 use std::sync::Arc;
 

@@ -2,10 +2,11 @@
 //! each other.
 
 use crate::math::{Angle, Fixed};
-use crate::world::monsters::patrol::Heading;
-use crate::world::state::actor::{Actor, ActorId, ActorKind, NO_BLOCK, NONE};
+use crate::world::parts::actor::{Actor, ActorId, NO_BLOCK, NONE};
 use crate::world::state::world::World;
+use crate::world::tables::heading::Heading;
 use crate::world::tables::info::ActorFlags;
+use crate::world::tables::kinds::ActorKind;
 use crate::world::tables::states::Phase;
 
 /// Actors with any of these flags are not in the thing grid: nothing ever meets them.

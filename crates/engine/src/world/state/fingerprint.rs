@@ -1,7 +1,7 @@
 //! Snapshots and fingerprints of a world.
 
-use crate::world::sectors::riders::Riders;
-use crate::world::state::sector::{Busy, SectorState};
+use crate::world::parts::riders::Riders;
+use crate::world::parts::sector::{Busy, SectorState};
 use crate::world::state::world::World;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;

@@ -1,11 +1,7 @@
-//! What a world is: plain data, and the slots that actors live in.
+//! The world as a whole: its state, the slots that actors live in, its fingerprint.
 
-pub mod actor;
+pub mod animation;
 pub mod arena;
-pub mod command;
-pub mod event;
 pub mod fingerprint;
-pub mod player;
-pub mod sector;
 pub mod spawn;
 pub mod world;

@@ -1,10 +1,11 @@
 //! Putting actors into the world and at other places, with the scripts' test of room.
 
 use crate::math::{Angle, Fixed};
-use crate::world::state::actor::{Actor, ActorId, ActorKind};
-use crate::world::state::player::Player;
+use crate::world::parts::actor::{Actor, ActorId};
+use crate::world::parts::player::Player;
 use crate::world::state::world::World;
 use crate::world::tables::info::ActorFlags;
+use crate::world::tables::kinds::ActorKind;
 
 impl World {
     /// Creates an actor at absolute (x, y, z) if there is room, as the scripts' `Spawn` does: its

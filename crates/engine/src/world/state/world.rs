@@ -3,16 +3,17 @@
 use crate::map::Map;
 use crate::math::{Fixed, Rng};
 use crate::simd::prefetch;
-use crate::world::effects::soot::Soot;
-use crate::world::effects::trail::Trail;
-use crate::world::motion::sight::Crossing;
-use crate::world::sectors::lights::Lights;
-use crate::world::sectors::movers::Movers;
-use crate::world::sectors::riders::{Footing, Riders};
-use crate::world::state::actor::{Actor, ActorId, ActorKind, NONE};
-use crate::world::state::event::Event;
-use crate::world::state::player::Player;
-use crate::world::state::sector::{SectorDamage, SectorState};
+use crate::world::parts::actor::{Actor, ActorId, NONE};
+use crate::world::parts::crossing::Crossing;
+use crate::world::parts::event::Event;
+use crate::world::parts::lights::Lights;
+use crate::world::parts::movers::Movers;
+use crate::world::parts::player::Player;
+use crate::world::parts::riders::{Footing, Riders};
+use crate::world::parts::sector::{SectorDamage, SectorState};
+use crate::world::parts::soot::Soot;
+use crate::world::parts::trail::Trail;
+use crate::world::tables::kinds::ActorKind;
 use std::sync::Arc;
 
 /// The whole state of one running map.

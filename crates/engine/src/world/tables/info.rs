@@ -4,8 +4,7 @@
 //! a barrel" has one answer for movement, rendering and rules alike.
 
 use crate::math::Fixed;
-use crate::world::state::actor::ActorKind;
-use crate::world::state::player::Weapon;
+use crate::world::tables::kinds::{ActorKind, Weapon};
 
 /// Properties of an actor, a bit each. Every actor starts with those of its kind; death and scripts
 /// change them.

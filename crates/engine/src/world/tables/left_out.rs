@@ -2,7 +2,7 @@
 //! world alone.
 
 use crate::map::{MapSource, SourceLine, special};
-use crate::world::state::actor::ActorKind;
+use crate::world::tables::kinds::ActorKind;
 use std::collections::BTreeMap;
 
 /// Sector specials that are played, or that mean nothing.

@@ -5,10 +5,9 @@
 //! of the tics since they appeared, so that a hundred items at rest cost nothing per tic.
 
 use crate::assets::sprite_index;
-use crate::world::state::actor::{Actor, ActorKind};
-use crate::world::state::event::DamageKind;
-use crate::world::state::world::World;
-use crate::world::tables::info::{ActorFlags, kinds};
+
+use crate::world::tables::info::kinds;
+use crate::world::tables::kinds::ActorKind;
 
 /// Which of its animations an actor is in.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -106,7 +105,7 @@ fn parts(upper: u16, lower: u16) -> u8 {
 
 /// How opaque a kind is in a phase and at an age in tics, as measured in the original; barrels
 /// burst without shining through.
-fn opacity(kind: ActorKind, phase: Phase, age: u32) -> u8 {
+pub(in crate::world) fn opacity(kind: ActorKind, phase: Phase, age: u32) -> u8 {
     match (kind, phase) {
         (K::BulletPuff, _) => OPAQUE / 2,
         (K::BlurSphere, _) => {
@@ -365,15 +364,15 @@ const fn death_of(kind: ActorKind) -> Option<Animation> {
 }
 
 /// Every animation of a kind.
-struct Animations {
-    by_phase: [Animation; 4],
+pub(in crate::world) struct Animations {
+    pub(in crate::world) by_phase: [Animation; 4],
     /// The idle animation loops without acting, so that its frame follows from the tics alone.
-    idle_is_timed: bool,
+    pub(in crate::world) idle_is_timed: bool,
     /// Tics of one turn of the idle animation, 0 for a still picture.
-    idle_period: u32,
+    pub(in crate::world) idle_period: u32,
 }
 
-static ANIMATIONS: [Animations; ActorKind::COUNT] = {
+pub(in crate::world) static ANIMATIONS: [Animations; ActorKind::COUNT] = {
     let mut table = [const { animations_of(K::Player) }; ActorKind::COUNT];
     let mut i = 0;
     while i < KINDS.len() {
@@ -421,128 +420,6 @@ pub fn animation(kind: ActorKind, phase: Phase) -> &'static Animation {
 #[must_use]
 pub fn is_timed(kind: ActorKind, phase: Phase) -> bool {
     phase == Phase::Idle && ANIMATIONS[kind as usize].idle_is_timed
-}
-
-impl World {
-    /// Starts the idle animation of a new actor; the end of [`World::spawn`]. Nothing is done on
-    /// its first frame.
-    pub(in crate::world) fn start_animation(&mut self, slot: usize) {
-        let actor = &mut self.actors[slot];
-        (actor.phase, actor.step) = (Phase::Idle, 0);
-        actor.tics = animation(actor.kind, Phase::Idle).frames[0].tics;
-    }
-
-    /// One tic of an actor's animation; called every tic after its move, unless the animation is
-    /// timed. May remove it.
-    pub(in crate::world) fn tick_animation(&mut self, slot: usize) {
-        let actor = &mut self.actors[slot];
-        if actor.tics < 0 {
-            return;
-        }
-        actor.tics -= 1;
-        if actor.tics > 0 {
-            return;
-        }
-        let animation = animation(actor.kind, actor.phase);
-        let next = usize::from(actor.step) + 1;
-        if next < animation.frames.len() {
-            return self.enter_frame(slot, next as u8);
-        }
-        match animation.then {
-            Then::Loop => self.enter_frame(slot, 0),
-            Then::Walk => self.set_phase(slot, Phase::Walk),
-            Then::Vanish => self.remove(self.id_of(slot)),
-        }
-    }
-
-    /// Puts an actor into the first frame of a phase and does what that frame does.
-    pub(in crate::world) fn set_phase(&mut self, slot: usize, phase: Phase) {
-        self.actors[slot].phase = phase;
-        self.wake_slot(slot);
-        self.enter_frame(slot, 0);
-    }
-
-    fn enter_frame(&mut self, slot: usize, step: u8) {
-        let actor = &mut self.actors[slot];
-        let frame = &animation(actor.kind, actor.phase).frames[usize::from(step)];
-        (actor.step, actor.tics) = (step, frame.tics);
-        match frame.action {
-            Action::None => {}
-            Action::Look => self.look(slot),
-            Action::Chase => self.chase(slot),
-            Action::StopBlocking => self.actors[slot].flags.set(ActorFlags::SOLID, false),
-            Action::Smoke => self.leave_smoke(slot),
-            Action::Explode => {
-                let (kind, origin) = (actor.kind, actor.origin);
-                let by = if kind == K::ExplosiveBarrel {
-                    DamageKind::Barrel
-                } else {
-                    DamageKind::Splash
-                };
-                self.blast(slot, origin, by);
-            }
-        }
-    }
-
-    /// Takes 0 to 3 tics off an actor's frame, but leaves 1, so that puffs and explosions do not
-    /// all look alike.
-    pub(in crate::world) fn shorten_frame(&mut self, slot: usize) {
-        let cut = (self.rng.byte() & 3) as i16;
-        let actor = &mut self.actors[slot];
-        actor.tics = (actor.tics - cut).max(1);
-    }
-
-    /// Puts an actor into a later frame of its animation.
-    pub(in crate::world) fn skip_to_frame(&mut self, slot: usize, step: u8) {
-        self.enter_frame(slot, step);
-    }
-}
-
-impl Actor {
-    /// What of the actor is drawn after `tic` completed tics of its world.
-    #[must_use]
-    pub fn picture(&self, tic: u32) -> Picture {
-        let (age, animations) = (tic.wrapping_sub(self.spawn_tic), &ANIMATIONS[self.kind as usize]);
-        let frames = animations.by_phase[self.phase as usize].frames;
-        let frame = if self.phase == Phase::Idle && animations.idle_is_timed {
-            let mut left = match animations.idle_period {
-                0 => 0,
-                period => (age % period) as i16,
-            };
-            let mut step = 0;
-            while left >= frames[step].tics && frames[step].tics > 0 {
-                left -= frames[step].tics;
-                step += 1;
-            }
-            &frames[step]
-        } else {
-            &frames[usize::from(self.step)]
-        };
-        Picture {
-            sprite: frame.sprite,
-            frame: frame.frame,
-            bright: frame.bright,
-            opacity: opacity(self.kind, self.phase, age),
-        }
-    }
-
-    /// Name of the actor in label lists: the class name, with `Dead` before it once it is dying.
-    #[must_use]
-    pub fn label_name(&self) -> &'static str {
-        match (self.phase, self.kind) {
-            (Phase::Death, K::ExplosiveBarrel) => "DeadExplosiveBarrel",
-            (Phase::Death, K::Player) => "DeadDoomPlayer",
-            (Phase::Death, K::Cacodemon) => "DeadCacodemon",
-            (Phase::Death, K::ZombieMan) => "DeadZombieman",
-            (Phase::Death, K::ShotgunGuy) => "DeadShotgunGuy",
-            (Phase::Death, K::ChaingunGuy) => "DeadChaingunGuy",
-            (Phase::Death, K::DoomImp) => "DeadDoomImp",
-            (Phase::Death, K::Demon) => "DeadDemon",
-            (Phase::Death, K::Revenant) => "DeadRevenant",
-            (Phase::Death, K::LostSoul) => "DeadLostSoul",
-            _ => self.kind.class_name(),
-        }
-    }
 }
 
 #[cfg(test)]

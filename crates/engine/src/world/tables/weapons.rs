@@ -1,6 +1,6 @@
 //! What every weapon is: its ammunition, its rank and its pictures, tic by tic.
 
-use crate::world::state::player::Weapon;
+use crate::world::tables::kinds::Weapon;
 use crate::world::tables::states::sprite;
 
 /// Ammunition types: indices into [`Player::ammo`](crate::world::Player::ammo).
@@ -252,6 +252,24 @@ impl Weapon {
             Weapon::Bfg9000 => 7,
         }
     }
+}
+
+/// How far bullets scatter: bits by which a triangular draw of -255..=255 is shifted.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::world) struct Spread {
+    /// Sideways, 0 for none: 18 gives 5.6 degrees at most, 19 twice that.
+    pub yaw_shift: u32,
+    /// Up and down too.
+    pub vertical: bool,
+}
+
+impl Spread {
+    /// Every bullet where the weapon points.
+    pub const NONE: Spread = Spread { yaw_shift: 0, vertical: false };
+    /// Sideways by 5.6 degrees at most.
+    pub const NARROW: Spread = Spread { yaw_shift: 18, vertical: false };
+    /// Sideways by 11.2 degrees, up and down by 7 degrees at most.
+    pub const WIDE: Spread = Spread { yaw_shift: 19, vertical: true };
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The rules at work: carry weapons to the delivery zone without carrying too much.
 
 use crate::error::EnvError;
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::scenarios::armament_burden::levels::{
     CAPACITY, DECOY_WEIGHTS, DECOYS, LEAST_SPEED, Level, PENALTY_SPEED, PENALTY_TICS, PIT_DAMAGE,
     PIT_HEIGHT, PIT_SPEED, VALUES, WEAPONS,

@@ -2,7 +2,7 @@
 //! once.
 
 use crate::error::EnvError;
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::scenarios::collateral_damage::levels::Level;
 use crate::scenarios::common::outcome::Outcome;
 use crate::scenarios::common::{rules, stage};

@@ -1,7 +1,7 @@
 //! What a scenario is to everything else: its facts as plain data, and what makes its worlds.
 
 use crate::error::EnvError;
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::scenarios::common::rule_set::RuleSet;
 use crate::scenarios::common::rules::AnyRules;
 use crate::spaces::action::Controls;

@@ -1,7 +1,7 @@
 //! The rules at work: burst barrels are rewarded, killed creatures and lost health cost.
 
 use crate::error::EnvError;
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::scenarios::common::outcome::Outcome;
 use crate::scenarios::common::tally::Tally;
 use crate::scenarios::common::{rules, stage};

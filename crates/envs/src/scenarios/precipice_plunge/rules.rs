@@ -1,7 +1,7 @@
 //! The rules at work: climb down a cave whose floor sank away, without falling hard.
 
 use crate::error::EnvError;
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::scenarios::common::outcome::Outcome;
 use crate::scenarios::common::{rules, stage};
 use crate::scenarios::precipice_plunge::levels::{

@@ -1,7 +1,7 @@
 //! The rules at work: items lie on platforms and on lava; lava costs health.
 
 use crate::error::EnvError;
-use crate::interface::environment::CostTerm;
+use crate::interface::step::CostTerm;
 use crate::scenarios::common::outcome::Outcome;
 use crate::scenarios::common::{rules, stage};
 use crate::scenarios::volcanic_venture::levels::{

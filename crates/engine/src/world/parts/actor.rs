@@ -2,84 +2,10 @@
 
 use crate::map::SectorId;
 use crate::math::{Angle, Fixed};
-use crate::world::monsters::patrol::Heading;
+use crate::world::tables::heading::Heading;
 use crate::world::tables::info::ActorFlags;
+use crate::world::tables::kinds::ActorKind;
 use crate::world::tables::states::Phase;
-
-/// What an actor is. Class names are those of the original engine.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-#[repr(u8)]
-#[allow(missing_docs, reason = "the variants are the engine's class names")]
-pub enum ActorKind {
-    Player,
-    // Items.
-    HealthBonus,
-    Stimpack,
-    Medikit,
-    ArmorBonus,
-    RocketAmmo,
-    Shell,
-    Cell,
-    Clip,
-    Infrared,
-    BlurSphere,
-    Allmap,
-    Backpack,
-    RadSuit,
-    YellowCard,
-    BlueSkull,
-    Pistol,
-    Shotgun,
-    SuperShotgun,
-    Chaingun,
-    RocketLauncher,
-    PlasmaRifle,
-    Bfg9000,
-    // Monsters.
-    Cacodemon,
-    ZombieMan,
-    ShotgunGuy,
-    ChaingunGuy,
-    DoomImp,
-    Demon,
-    Revenant,
-    LostSoul,
-    // Things that burst, fly or fade.
-    ExplosiveBarrel,
-    Rocket,
-    RocketSmokeTrail,
-    PlasmaBall,
-    BfgBall,
-    BulletPuff,
-    Blood,
-    // Decor.
-    TechLamp,
-    TechLamp2,
-    ShortRedColumn,
-    ShortGreenColumn,
-    HeartColumn,
-    TechPillar,
-    TorchTree,
-    Stalagtite,
-    BigTree,
-    Gibs,
-    GibbedMarine,
-    SmallBloodPool,
-    BrainStem,
-    // Invisible.
-    PatrolPoint,
-    // Decor of the published maps that nothing else knows.
-    DeadMarine,
-    DeadZombieMan,
-    DeadShotgunGuy,
-    Candlestick,
-    ShortBlueTorch,
-    ShortGreenTorch,
-    ShortRedTorch,
-    ColonGibs,
-    BurningTop,
-    BurningDebris,
-}
 
 /// Names an actor: its slot and the slot's generation, so that the name of a removed actor never
 /// means another.

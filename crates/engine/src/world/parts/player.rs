@@ -1,30 +1,19 @@
 //! Players: what a human or an agent has beyond its body.
 
 use crate::math::Fixed;
-use crate::world::player::face::FaceState;
-use crate::world::player::view_height::VIEW_HEIGHT;
-use crate::world::player::weapon::WeaponState;
-use crate::world::state::actor::ActorId;
-use crate::world::state::command::Buttons;
+use crate::world::parts::actor::ActorId;
+use crate::world::parts::command::Buttons;
+use crate::world::parts::face::FaceState;
+use crate::world::parts::hands::WeaponState;
+use crate::world::tables::kinds::Weapon;
 use crate::world::tables::weapons::ammo;
+
+/// Height of the eye above the feet of an upright player.
+pub(crate) const VIEW_HEIGHT: Fixed = Fixed::from_int(41);
 
 /// Tics after the start of a map during which bodies neither turn, walk nor jump; scenarios may
 /// change a player's count.
 pub const SPAWN_FREEZE_TICS: u32 = 8;
-
-/// A weapon that a player can hold, in slot order.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-#[repr(u8)]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum Weapon {
-    Pistol,
-    Shotgun,
-    SuperShotgun,
-    Chaingun,
-    RocketLauncher,
-    PlasmaRifle,
-    Bfg9000,
-}
 
 /// One layer of the view weapon (the weapon, or its muzzle flash), in 320x200 screen space.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

@@ -1,20 +1,9 @@
 //! What happened during a tic, for scenario rules and statistics.
 
 use crate::math::Fixed;
-use crate::world::state::actor::{ActorId, ActorKind};
-
-/// What did the damage.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum DamageKind {
-    Sector,
-    Falling,
-    Bullet,
-    Rocket,
-    Splash,
-    Barrel,
-    Script,
-}
+use crate::world::parts::actor::ActorId;
+use crate::world::tables::kinds::ActorKind;
+use crate::world::tables::kinds::DamageKind;
 
 /// One happening; `World::events` lists them in order until the caller clears it.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
