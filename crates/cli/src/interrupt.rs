@@ -18,7 +18,7 @@ const TERMINATE: i32 = 15;
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Manner {
-    /// No command runs: whoever called this library hears of signals by itself.
+    /// No command runs: the caller of this library hears of signals by itself.
     Idle,
     /// The command ends there.
     AtOnce,
@@ -114,7 +114,7 @@ fn listen() {
     let _ = ctrlc::set_handler(|| heard(INTERRUPT));
 }
 
-/// Whether whoever started this process had a signal ignored.
+/// Whether the process that started this one had a signal ignored.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     // SAFETY: `sigaction` is plain data for which zeros are valid, and with a null action the call

@@ -1,4 +1,6 @@
 //! The program as its user meets it: what commands write, and what they say of bad input.
+//!
+//! Long because each command is met once, with its bad inputs.
 
 mod folder;
 

@@ -1,4 +1,4 @@
-//! What the repository's files say of each other: whoever clones it has everything that they name.
+//! What the repository's files say of each other: a clone has everything that they name.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,7 @@
 //! How commands end before their time: by signals, by streams that cannot be written, and what is
 //! there afterwards.
+//!
+//! Long because each way to end is tried with the commands that have it.
 
 #![cfg(unix)]
 

@@ -56,7 +56,7 @@ pub enum WadError {
     LumpOutside {
         /// Its index.
         index: usize,
-        /// Its name.
+        /// Name of the lump.
         name: TextureName,
     },
     /// The map is in a binary format.

@@ -1,5 +1,7 @@
 //! Weapons, missiles, blasts, monsters and barrels in small rooms, held against what was measured
 //! of the original.
+//!
+//! Long because each of some twenty measurements is a small room of its own.
 
 use hasard_engine::map::{Map, MapBuilder, Style};
 use hasard_engine::math::{Angle, Fixed};

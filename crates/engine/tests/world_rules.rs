@@ -1,4 +1,6 @@
 //! Rules of the world beyond recorded motion: items, room, moving floors, light, harm, copies.
+//!
+//! Long because each rule is a small room of its own.
 
 mod hall;
 

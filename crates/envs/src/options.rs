@@ -64,7 +64,7 @@ pub struct EnvOptions {
     pub layout: Layout,
     /// Number of last frames stacked along the channel axis, oldest first; 1..=16.
     pub frame_stack: usize,
-    /// Depth of walls ends where the published engine's does, not at 255.
+    /// Depth of walls ends where ViZDoom's does, not at 255.
     pub published_depth: bool,
     /// Segmented frames have the published colours, some of which several classes share.
     pub published_colours: bool,

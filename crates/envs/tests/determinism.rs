@@ -1,5 +1,7 @@
 //! The same seed and actions give the same bits, however the worlds are stepped; other seeds and
 //! lanes give other episodes; a moment restored goes on as it would have.
+//!
+//! Long because each way of stepping is compared with the plain one.
 
 use hasard_engine::math::Rng;
 use hasard_engine::world::Fingerprint;

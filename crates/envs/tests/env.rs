@@ -44,7 +44,7 @@ fn an_episode_reports_the_terms_that_are_not_counted() {
         let counted_by_scenario =
             |env: &Env| env.stats().into_iter().find(|(name, _)| *name == term).unwrap().1;
         env.reset(3);
-        // Whoever begins in the zone has come by before the first step.
+        // An agent that begins in the zone has come by before the first step.
         let before = counted_by_scenario(&env);
         let episode = rollout(&mut env, &policy.parse().unwrap(), 3).unwrap();
         let found = episode.costs.iter().find(|one| one.name == term).unwrap();

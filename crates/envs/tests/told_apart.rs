@@ -126,10 +126,9 @@ fn difference([a, b]: [&[u8]; 2], covered: [&[bool]; 2]) -> (usize, f64) {
     (inside.len(), unlike as f64 / inside.len().max(1) as f64)
 }
 
-/// Least share of a thing's pixels that differ from what is behind it, and that differ between two
-/// things in one place.
+/// Least share of a thing's pixels that differ from what is behind it.
 const SEEN: f64 = 0.55;
-/// See above.
+/// Least share of the pixels of two things in one place that differ between them.
 const APART: f64 = 0.6;
 
 #[test]

@@ -20,7 +20,7 @@ fn trained(name: &str) -> (PathBuf, PathBuf) {
     (path, checkpoint)
 }
 
-/// Changes the training file, and makes its checksum fit as whoever means harm would.
+/// Changes the training file, and makes its checksum fit as an attacker would.
 fn change(checkpoint: &Path, spoil: impl FnOnce(&mut Vec<u8>)) {
     let file = checkpoint.join("training.safetensors");
     let mut bytes = std::fs::read(&file).unwrap();

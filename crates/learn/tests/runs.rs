@@ -1,4 +1,6 @@
 //! Runs and their directories: resuming, stopping, locking, damage.
+//!
+//! Long because runs that go on after a stop are compared in many ways with one that never stopped.
 
 mod tiny;
 

@@ -237,7 +237,7 @@ impl EpisodeFile {
         if checksum(&bytes[..content]).to_le_bytes() != bytes[content..] {
             return Err(damaged());
         }
-        // From here on the file is as it was written; whoever wrote it may still have been hostile.
+        // From here on the file is as it was written; its writer may still have been hostile.
         let mut rest = &bytes[10..content];
         let header = take_block(&mut rest)
             .filter(|header| header.len() <= MAX_HEADER)

@@ -15,7 +15,7 @@ impl Default for Quality {
 }
 
 impl Quality {
-    /// The number.
+    /// The quality as a number, 0 to 100.
     #[must_use]
     pub fn value(self) -> u8 {
         self.0

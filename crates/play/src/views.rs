@@ -18,7 +18,7 @@ pub enum ViewKind {
     Depth,
     /// One colour for each class of things.
     Segmented,
-    /// One grey for each thing in view, as the published engine numbers them.
+    /// One grey for each thing in view, as ViZDoom numbers them.
     Labels,
     /// Luminance.
     Grey,

@@ -1,5 +1,7 @@
 //! The window to play in. One type holds an episode, what lies over its picture and the window:
 //! its events touch all of them, so that they stay in one file.
+//!
+//! Long because keys, mouse and drawing share the state of one window.
 
 mod blit;
 mod keys;

@@ -1,4 +1,6 @@
 //! The class `Worlds`: a batch of worlds, raw, without Gymnasium.
+//!
+//! Long because Python sees one class, and `pymethods` of a class stand in one block.
 
 use crate::actions::{read_actions, read_deltas};
 use crate::arguments;

@@ -1,4 +1,6 @@
 //! A report on synthetic runs, from directories to files.
+//!
+//! Long because it makes whole run directories and reads every file that a report writes.
 
 mod synthetic;
 

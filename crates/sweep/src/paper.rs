@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// An experiment.
 #[derive(Clone, Copy, Debug)]
 pub struct Experiment {
-    /// Its name.
+    /// The name by which `hasard sweep` knows it.
     pub name: &'static str,
     /// The tables and figures of the paper that it fills; empty for one of our own.
     pub fills: &'static str,

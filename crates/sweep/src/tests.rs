@@ -1,3 +1,7 @@
+//! Experiments and grids, expanded into their runs.
+//!
+//! Long because each experiment of the paper is expanded and counted.
+
 use crate::*;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;

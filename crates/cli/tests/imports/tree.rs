@@ -6,6 +6,9 @@ use std::path::Path;
 /// Who imports whom, by the paths of modules: `render/walls/seg`.
 pub type Arrows = BTreeMap<String, BTreeSet<String>>;
 
+/// What each folder re-exports.
+type Exports<'a> = BTreeMap<&'a str, BTreeSet<Vec<String>>>;
+
 /// The sources of a crate by module; the crate's own is the empty one. Files of tests are left out,
 /// as they may look at anything.
 #[derive(Default)]
@@ -55,9 +58,13 @@ impl Tree {
     /// re-exports is followed to where it comes from.
     pub fn arrows(&self) -> Arrows {
         let mut arrows = Arrows::new();
+        let folders = self.sources.iter().filter(|(_, source)| source.is_folder);
+        let exports: Exports = folders
+            .map(|(module, source)| (module.as_str(), self.named_in(module, source, true)))
+            .collect();
         for (module, source) in &self.sources {
             for path in self.named_in(module, source, false) {
-                let defining = self.defining(&path, 0);
+                let defining = self.defining(&path, &exports, 0);
                 if defining != *module {
                     arrows.entry(module.clone()).or_default().insert(defining);
                 }
@@ -119,7 +126,7 @@ impl Tree {
     }
 
     /// The module that defines what a path from the crate's root names.
-    fn defining(&self, path: &[String], depth: usize) -> String {
+    fn defining(&self, path: &[String], exports: &Exports, depth: usize) -> String {
         let mut module = String::new();
         for (i, name) in path.iter().enumerate() {
             let child = if module.is_empty() { name.clone() } else { format!("{module}/{name}") };
@@ -127,15 +134,12 @@ impl Tree {
                 module = child;
                 continue;
             }
-            let Some(source) = self.sources.get(&module).filter(|source| source.is_folder) else {
-                break;
-            };
-            let exported = self.named_in(&module, source, true);
+            let Some(exported) = exports.get(module.as_str()) else { break };
             let found =
                 exported.iter().find(|chain| chain.last() == Some(name) && chain[..] != path[..=i]);
             if let Some(chain) = found.filter(|_| depth < 8) {
                 let whole: Vec<String> = chain.iter().chain(&path[i + 1..]).cloned().collect();
-                return self.defining(&whole, depth + 1);
+                return self.defining(&whole, exports, depth + 1);
             }
             break;
         }
@@ -145,7 +149,12 @@ impl Tree {
 
 /// Arrows within a folder against the order of what lies in it, each as one line; and what lies in
 /// it without a place in the order.
-pub fn against_the_order(tree: &Tree, folder: &str, order: &[&str]) -> Vec<String> {
+pub fn against_the_order(
+    tree: &Tree,
+    arrows: &Arrows,
+    folder: &str,
+    order: &[&str],
+) -> Vec<String> {
     let first = |module: &str| {
         within(module, folder).map(|rest| rest.split('/').next().unwrap_or(rest).to_string())
     };
@@ -156,9 +165,9 @@ pub fn against_the_order(tree: &Tree, folder: &str, order: &[&str]) -> Vec<Strin
         .filter(|module| place(module).is_none())
         .map(|module| format!("{module} has no place in the order of {folder:?}"))
         .collect();
-    for (from, all) in tree.arrows() {
+    for (from, all) in arrows {
         for to in all {
-            if let (Some(own), Some(other)) = (place(&from), place(&to))
+            if let (Some(own), Some(other)) = (place(from), place(to))
                 && other > own
             {
                 wrong.push(format!("{from} imports {to}, which comes after it"));
@@ -170,8 +179,8 @@ pub fn against_the_order(tree: &Tree, folder: &str, order: &[&str]) -> Vec<Strin
 
 /// The modules of a folder that import one another in circles: what imports nothing that is left is
 /// taken away until nothing changes, and so is what nothing that is left imports.
-pub fn circles(tree: &Tree, folder: &str) -> Arrows {
-    let mut left: Arrows = tree.arrows();
+pub fn circles(arrows: &Arrows, folder: &str) -> Arrows {
+    let mut left = arrows.clone();
     left.retain(|from, _| folder.is_empty() || from == folder || within(from, folder).is_some());
     loop {
         let (from, to): (BTreeSet<String>, BTreeSet<String>) =

@@ -12,7 +12,7 @@ const ENTRY_LIMIT: usize = 8_000_000;
 
 impl Blockmap {
     /// Lists the lines by block. A line is in every block whose closed square it touches, so that
-    /// whoever looks in the blocks that a box overlaps meets every line that the box touches.
+    /// a look in the blocks that a box overlaps meets every line that the box touches.
     pub(super) fn build(lines: &[Line]) -> Result<Blockmap, MapError> {
         let limit = |pick: fn(&Line) -> i32, low: bool| {
             let all = lines.iter().map(pick);

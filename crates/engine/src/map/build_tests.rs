@@ -1,5 +1,7 @@
 //! The built map held against its definition: brute force over the lines instead of tree and
 //! blockmap.
+//!
+//! Long because each structure of a built map has its own brute-force twin.
 
 use super::{
     Line, Map, MapBuilder, MapError, MapSource, Node, SectorId, SourceLine, SourceSector, Style,

@@ -4,6 +4,8 @@
 //! Later polygons cover earlier ones, as paper on a table. What is left visible of each becomes its
 //! sector; where two sectors meet there is a two-sided line, where one meets nothing there is a
 //! wall.
+//!
+//! Long because it is the whole vocabulary for drawing maps, which one reads as a page.
 
 use super::arrangement::{self, Owner, POINTS_PER_UNIT, Piece, Point, Regions};
 use super::{

@@ -88,7 +88,7 @@ impl Angle {
         })
     }
 
-    /// The direction of the vector `(dx, dy)` as the published engine tells it: by its slope from
+    /// The direction of the vector `(dx, dy)` as ViZDoom computes it: by its slope from
     /// the nearest axis, cut to whole 2048ths, and from some axes a unit short; `(0, 0)` is north.
     #[must_use]
     pub fn of_slope(dx: Fixed, dy: Fixed) -> Angle {

@@ -39,7 +39,7 @@ const fn sine_and_cosine(fine: i128) -> (i128, i128) {
 }
 
 /// The tangent of an angle from minus [`STEEPEST`] to it, 16.16. Negative ones are rounded towards
-/// zero after a half was added, as the published engine was seen to do: that moves distant floors
+/// zero after a half was added, as ViZDoom was seen to do: that moves distant floors
 /// by half a texel, and here and there a column of the sky by one.
 pub(crate) fn fine_tangent(fine: i32) -> i64 {
     let tangent = i64::from(TANGENTS[fine.unsigned_abs() as usize]);

@@ -20,7 +20,7 @@ const LEAST_THING: i64 = 2;
 /// Smallest half length of a player's and a creature's arrow, pixels, and as a share of the
 /// picture's shorter side.
 const LEAST_PLAYER: i64 = 5;
-/// See above.
+/// The same as one part in so many of that side.
 const PLAYER_SHARE: i64 = 60;
 
 /// A picture of a map from above at one size: what does not change is worked out once.

@@ -1,4 +1,6 @@
 //! Tests of whole frames.
+//!
+//! Long because every kind of frame is compared here with every family of vectors.
 
 use super::*;
 use crate::assets::Assets;

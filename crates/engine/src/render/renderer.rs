@@ -1,4 +1,6 @@
 //! The renderer: draws what one player of a world sees.
+//!
+//! Long because all the phases of a frame are called here, each with the buffers that it may touch.
 
 use crate::render::buffers::frame::{Frame, class};
 use crate::render::buffers::labels::{self, InView, Label, Labels};

@@ -126,7 +126,7 @@ impl Simd {
         there.ok_or_else(|| SimdError { given: name.escape_default().take(40).collect() })
     }
 
-    /// Its name.
+    /// The name by which `HASARD_SIMD` chooses it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self.family {
@@ -158,21 +158,17 @@ impl fmt::Display for Simd {
 }
 
 /// Declares the files of a kernel, one for each family of vectors, where the processor's
-/// architecture has it. These two macros hold every `cfg` that a kernel needs: one for ARM would be
-/// `neon`, one more line in each.
+/// architecture has it. These two macros hold every `cfg` that a kernel needs. `neon` is a file for
+/// ARM; every other name is one for x86-64, mostly `avx2` and `avx512`.
 macro_rules! kernel_files {
     ($($family:ident),+ $(,)?) => { $($crate::simd::kernel_files!(@ $family);)+ };
-    (@ avx2) => {
-        #[cfg(target_arch = "x86_64")]
-        pub mod avx2;
-    };
-    (@ avx512) => {
-        #[cfg(target_arch = "x86_64")]
-        pub mod avx512;
-    };
     (@ neon) => {
         #[cfg(target_arch = "aarch64")]
         pub mod neon;
+    };
+    (@ $x86:ident) => {
+        #[cfg(target_arch = "x86_64")]
+        pub mod $x86;
     };
 }
 pub(crate) use kernel_files;
@@ -225,13 +221,6 @@ pub(crate) fn prefetch_lines(start: *const u8, lines: usize) {
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = (start, lines);
-}
-
-/// The mask of the first `count` of eight numbers side by side, of all if there are more.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-pub(crate) const fn first_of_eight(count: usize) -> u8 {
-    if count < 8 { (1 << count) - 1 } else { u8::MAX }
 }
 
 /// `HASARD_SIMD` names no family of this processor.

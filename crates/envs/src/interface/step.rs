@@ -28,7 +28,7 @@ impl Step {
 /// scalar cost.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct CostTerm {
-    /// Its name.
+    /// The name in tables and settings.
     pub name: &'static str,
     /// Part of the scalar cost.
     pub counted: bool,

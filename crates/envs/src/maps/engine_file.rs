@@ -1,4 +1,4 @@
-//! The file in which the published engine has pictures of its own: sprites that no IWAD has.
+//! The file in which ViZDoom has pictures of its own: sprites that no IWAD has.
 
 use crate::error::EnvError;
 use crate::maps::files::{read, shown};
@@ -21,7 +21,7 @@ const SOOT: &str = "graphics/scorch1.";
 const FILE_LIMIT: usize = 1 << 16;
 const PICTURE_LIMIT: u64 = 1 << 20;
 
-/// The pictures of the published engine's own file, where it lies beside an IWAD, as a WAD to lay
+/// The pictures of ViZDoom's own file, where it lies beside an IWAD, as a WAD to lay
 /// over that one.
 ///
 /// # Errors

@@ -3,7 +3,7 @@
 //!
 //! A folder of maps is laid out as the published package is: `remedy_rush/level_1.wad`, and beside
 //! the levels `level_1_hard.wad`. Each file is a WAD with a UDMF map `MAP01`; its pictures are laid
-//! over the IWAD's, and over those of the published engine's own file where that lies beside the
+//! over the IWAD's, and over those of ViZDoom's own file where that lies beside the
 //! IWAD. The scenario's rules act on the map at hand: `docs/guide/maps.md` says what they look for.
 
 mod auto;

@@ -1,4 +1,6 @@
 //! Reads `[[when]]`: what sets a rule off, on what conditions, and what it does.
+//!
+//! Long because it is one table: each event, condition and effect with its fields.
 
 use super::fields::{Fields, own_name};
 use super::mistakes::{Mistakes, unknown};

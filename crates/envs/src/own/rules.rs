@@ -1,4 +1,6 @@
 //! The rules of a file at work: what happened is looked up in tables, and what they say is done.
+//!
+//! Long because it is the one interpreter of all that a file can say.
 
 use super::model::{Of, Trigger, When};
 use super::program::{Happening, Program};

@@ -1,4 +1,6 @@
 //! The READMEs of the scenarios held against their level tables.
+//!
+//! Long because each of six pages has its own table.
 
 use crate::registry::scenario::Scenario;
 use crate::scenarios::common::rule_set::RuleSet;

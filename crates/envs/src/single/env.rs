@@ -1,4 +1,6 @@
 //! The single environment.
+//!
+//! Long because the trait of the batch repeats what the type offers by itself.
 
 use crate::error::EnvError;
 use crate::interface::batch::{Episode, episode_costs};

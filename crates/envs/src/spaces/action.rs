@@ -43,7 +43,7 @@ pub enum DeltaButton {
 }
 
 impl DeltaButton {
-    /// Its name.
+    /// The button's name in commands.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

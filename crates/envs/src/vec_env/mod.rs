@@ -1,5 +1,7 @@
 //! The batch of worlds: many environments stepped side by side by worker threads and the caller
 //! that waits for them.
+//!
+//! Long because every way to step a batch is a method of one type, and most of it is what they promise.
 
 mod checks;
 mod crew;

@@ -19,7 +19,7 @@ pub struct Target {
     pub samples: fn() -> Vec<Vec<u8>>,
     /// Words that mean something to it.
     pub words: &'static [&'static str],
-    /// Makes checksums fit again, as whoever means harm would.
+    /// Makes checksums fit again, as an attacker would.
     pub repair: fn(Vec<u8>) -> Vec<u8>,
     /// Reads an input and uses what was read; tells whether it was accepted. May panic only where
     /// there is a fault.

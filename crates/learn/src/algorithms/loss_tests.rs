@@ -1,5 +1,7 @@
 //! Every loss against one taken from its paper once more, in plain 64-bit arithmetic: value, and
 //! gradient in the networks' outputs.
+//!
+//! Long because each of thirteen losses is written down a second time.
 
 use crate::algorithms::surrogate::standardised;
 use crate::algorithms::{Algorithm, Signal, cup, focops, p3o, ppo};

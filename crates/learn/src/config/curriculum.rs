@@ -4,12 +4,9 @@
 //! optimisers, multipliers and the window of latest episodes start anew, as in the published
 //! experiment. Counters go on: a curriculum is one run.
 
-use hasard_envs::EnvId;
 use serde::{Deserialize, Serialize};
 
-use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::random::{Purpose, Stream};
 
 /// A level, and how long it is trained.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
@@ -72,67 +69,10 @@ pub fn parse_curriculum(text: &str, frames: u64) -> Result<Vec<Lesson>, LearnErr
     Ok(lessons)
 }
 
-impl TrainConfig {
-    /// Makes the run a curriculum: its length becomes that of the lessons, its environment that of
-    /// the last.
-    pub fn set_curriculum(&mut self, lessons: Vec<Lesson>) {
-        self.frames = lessons.iter().fold(0, |sum, lesson| sum.saturating_add(lesson.frames));
-        if let Some(last) = lessons.last() {
-            self.env.id = id_at(&self.env, last.level);
-        }
-        self.curriculum = lessons;
-    }
-
-    /// Number of lessons; 1 without a curriculum.
-    #[must_use]
-    pub fn lessons(&self) -> usize {
-        self.curriculum.len().max(1)
-    }
-
-    /// The lesson after so many frames. The last one goes on for as long as the run does.
-    #[must_use]
-    pub fn lesson_at(&self, frames: u64) -> usize {
-        let mut end = 0u64;
-        let over = self.curriculum.iter().take_while(|lesson| {
-            end = end.saturating_add(lesson.frames);
-            end <= frames
-        });
-        over.count().min(self.lessons() - 1)
-    }
-
-    /// The settings of one lesson: its level, and a seed of its own, so that lessons do not draw
-    /// the same numbers.
-    #[must_use]
-    pub fn lesson(&self, index: usize) -> TrainConfig {
-        let mut config = self.clone();
-        if let Some(lesson) = self.curriculum.get(index) {
-            config.env.id = id_at(&self.env, lesson.level);
-        }
-        if index > 0 {
-            config.seed = Stream::new(self.seed, Purpose::Lesson, index as u64, 0).bits();
-        }
-        config
-    }
-
-    /// Name of the picture in the run's directory that the heatmaps of a lesson lie on.
-    #[must_use]
-    pub fn automap(&self, lesson: usize) -> String {
-        self.curriculum.get(lesson).map_or_else(
-            || "automap.png".into(),
-            |lesson| format!("automap-level{}.png", lesson.level),
-        )
-    }
-}
-
-/// The id at another level; unregistered ids, such as those of tests, have none.
-fn id_at(env: &super::EnvConfig, level: u8) -> String {
-    env.env_id().map_or_else(|_| env.id.clone(), |id| EnvId { level, ..id }.to_string())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{AlgorithmKind, EnvConfig, Preset};
+    use crate::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
 
     #[test]
     fn texts_become_lessons() {

@@ -43,7 +43,7 @@ pub struct EnvConfig {
     /// makes the worlds reads it.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "super::place")]
     pub iwad: Option<PathBuf>,
-    /// Where the maps come from; `null` for the built-in ones. Whoever makes the worlds reads them.
+    /// Where the maps come from; `null` for the built-in ones. What makes the worlds reads them.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "super::place")]
     pub maps: Option<PathBuf>,
 }

@@ -2,13 +2,16 @@
 //! needs nothing else.
 
 mod algorithm;
+mod change;
 pub mod constraint;
 pub mod curriculum;
 mod environment;
 mod evaluation;
+mod evaluation_times;
 pub mod explained;
 mod former;
 mod learning;
+mod lessons;
 mod names;
 mod network;
 mod own_scenario;

@@ -13,7 +13,7 @@ macro_rules! names {
             /// All of them.
             pub const ALL: &'static [$name] = &[$($name::$variant),+];
 
-            /// Its name.
+            /// The name in settings and messages.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $($name::$variant => $text,)+ }

@@ -1,10 +1,11 @@
 //! Single settings by their names in `config.json`: replaced when a run begins, and when it goes
 //! on.
 
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::config::{TrainConfig, explained};
+use crate::config::change::Change;
+use crate::config::explained;
+use crate::config::train_config::TrainConfig;
 use crate::error::LearnError;
 
 /// Settings that others hang on, and what to use instead: it brings those along.
@@ -52,19 +53,6 @@ const CHANGE_NOTHING: [&str; 6] = [
     "evaluation",
     "reporting",
 ];
-
-/// A setting that was given another value when the run was resumed.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-pub struct Change {
-    /// Frames after which it holds.
-    pub frames: u64,
-    /// Its name.
-    pub setting: String,
-    /// What it was before.
-    pub from: Value,
-    /// What it is since.
-    pub to: Value,
-}
 
 /// Where a setting such as `learning.rate` stands in `config.json`, as a JSON pointer.
 #[must_use]

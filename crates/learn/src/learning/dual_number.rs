@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// through it.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct DualNumber<const N: usize> {
-    /// The number.
+    /// The value that the derivatives are of.
     pub value: f64,
     /// Its derivative in each variable.
     pub slopes: [f64; N],

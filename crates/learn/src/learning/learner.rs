@@ -2,19 +2,21 @@
 
 use std::ops::Range;
 
-use crate::config::{ReturnNormaliser, TrainConfig};
+use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::learning::advantage::{Lane, generalised_advantages};
+use crate::learning::gather::gather;
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 pub use crate::learning::minibatch::{Critic, Minibatch};
-use crate::learning::normaliser::{CLIP, Moments, PixelNormaliser, PixelSums};
+use crate::learning::normaliser::{Moments, PixelNormaliser, PixelSums};
 use crate::learning::optimiser::Adam;
-use crate::learning::policy::{Policy, Taken};
+use crate::learning::policy::Policy;
 use crate::learning::popart::preserve_outputs;
+pub use crate::learning::targets::Prepared;
+use crate::learning::targets::prepare;
 use crate::networks::cpu::vectors::Vectors;
 use crate::networks::device::ComputeDevice;
-use crate::networks::{ModelSequences, ModelShape, Published, RecordedLane, Sequences, Stack};
+use crate::networks::{ModelSequences, ModelShape, Published, Stack};
 use crate::sampling::rollout::Rollout;
 use crate::team::Team;
 use hasard_engine::simd::Simd;
@@ -22,52 +24,6 @@ use hasard_engine::simd::Simd;
 /// Rows that a network of a learner of long rollouts computes at once: it bounds the memory of
 /// activations, some 50 kB a row of the smallest network of the presets and 110 kB of the largest.
 const MOST_ROWS: usize = 2048;
-
-/// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of
-/// the costs; values of lane `l` at step `t` are at `l * steps + t`.
-pub struct Prepared<'a> {
-    /// The rollout.
-    pub rollout: &'a Rollout,
-    /// Advantages of each critic, in raw units.
-    pub advantages: Vec<Vec<f32>>,
-    /// Normalised returns of each critic.
-    pub targets: Vec<Vec<f32>>,
-    /// Normalised values of each critic when the actions were taken.
-    pub old_values: Vec<Vec<f32>>,
-    /// Mean cost of each constraint per step.
-    pub mean_costs: Vec<f64>,
-}
-
-impl Prepared<'_> {
-    /// Share of the variance of each critic's targets that its values explain: 1 is perfect, 0 no
-    /// better than their mean.
-    #[must_use]
-    pub fn explained_variances(&self, config: &TrainConfig) -> Vec<(String, f64)> {
-        let variance = |values: &mut dyn Iterator<Item = f64>| {
-            let (count, sum, squares) =
-                values.fold((0.0, 0.0, 0.0), |(n, s, q), v| (n + 1.0, s + v, q + v * v));
-            squares / count - (sum / count) * (sum / count)
-        };
-        let share = |(critic, (targets, values)): (usize, (&Vec<f32>, &Vec<f32>))| {
-            let all = variance(&mut targets.iter().map(|&target| f64::from(target)));
-            let rest = variance(
-                &mut targets.iter().zip(values).map(|(target, value)| f64::from(target - value)),
-            );
-            (critic_name("explained_variance", config, critic), 1.0 - rest / all)
-        };
-        self.targets.iter().zip(&self.old_values).enumerate().map(share).collect()
-    }
-}
-
-/// What a number of a critic is called in reports: that of a cost says so, that of a named cost
-/// says which.
-fn critic_name(what: &str, config: &TrainConfig, critic: usize) -> String {
-    match critic.checked_sub(1).map(|index| &config.constraints[index].term) {
-        None => what.into(),
-        Some(None) => format!("cost_{what}"),
-        Some(Some(term)) => format!("cost_{what}/{term}"),
-    }
-}
 
 /// Networks, optimisers and running statistics.
 pub struct Learner {
@@ -189,176 +145,21 @@ impl Learner {
 
     /// Computes a rollout's advantages and targets, and takes over the statistics of its returns.
     pub fn prepare<'a>(&mut self, rollout: &'a Rollout) -> Prepared<'a> {
-        let (steps, lanes) = (rollout.steps(), rollout.lanes());
-        let (width, first) = (self.shape.outputs(), self.shape.value_column());
-        let constraints = self.config.constraints.len();
-        let settings = &self.config.learning;
-        let mut prepared = Prepared {
-            rollout,
-            advantages: Vec::new(),
-            targets: Vec::new(),
-            old_values: Vec::new(),
-            mean_costs: vec![0.0; constraints],
-        };
-        let popart = settings.normaliser == ReturnNormaliser::PopArt;
-        let shared = settings.cost_uses_reward_normaliser;
-        let mut moved = Vec::new();
-        for critic in 0..self.returns.len() {
-            let moments = &mut self.returns[if shared { 0 } else { critic }];
-            let raw = |moments: &Moments, value: f32| match () {
-                () if shared && critic > 0 => value.clamp(-CLIP, CLIP),
-                () if popart => moments.scale_up(value),
-                () => moments.denormalise(value),
-            };
-            let mut advantages = vec![0.0; steps * lanes];
-            let mut returns = vec![0.0; steps * lanes];
-            let mut old_values = vec![0.0; steps * lanes];
-            for lane in 0..lanes {
-                let (part, own) = rollout.find(lane);
-                let row = |step: usize| step * part.lanes + own;
-                let normalised: Vec<f32> = (0..=steps)
-                    .map(|step| part.outputs[row(step) * width + first + critic])
-                    .collect();
-                let values: Vec<f32> =
-                    normalised.iter().map(|&value| raw(moments, value)).collect();
-                let rewards: Vec<f32> = (0..steps)
-                    .map(|step| match critic {
-                        0 => part.rewards[row(step)],
-                        cost => part.costs[row(step) * constraints + cost - 1],
-                    })
-                    .collect();
-                let done: Vec<bool> = (0..steps).map(|step| part.done[row(step)]).collect();
-                let mut cut_off_values = vec![0.0; steps];
-                if settings.bootstraps(critic > 0) {
-                    for (cut, outputs) in
-                        part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own)
-                    {
-                        cut_off_values[cut / part.lanes] = raw(moments, outputs[first + critic]);
-                    }
-                }
-                let out = &mut advantages[lane * steps..(lane + 1) * steps];
-                let lane_values = Lane {
-                    rewards: &rewards,
-                    done: &done,
-                    cut_off_values: &cut_off_values,
-                    values: &values,
-                };
-                let gamma = if critic == 0 {
-                    settings.gamma
-                } else {
-                    settings.cost_gamma.unwrap_or(settings.gamma)
-                };
-                generalised_advantages(lane_values, gamma as f32, settings.gae_lambda as f32, out);
-                for step in 0..steps {
-                    returns[lane * steps + step] = out[step] + values[step];
-                    old_values[lane * steps + step] = normalised[step];
-                }
-            }
-            if popart {
-                let before = *moments;
-                moments.update_forgetting(&returns, settings.normaliser_horizon);
-                old_values
-                    .iter_mut()
-                    .for_each(|value| *value = moments.scale_down(before.scale_up(*value)));
-                prepared
-                    .targets
-                    .push(returns.iter().map(|&value| moments.scale_down(value)).collect());
-                moved.push((critic, before, *moments));
-            } else {
-                moments.update(&returns);
-                prepared
-                    .targets
-                    .push(returns.iter().map(|&value| moments.normalise(value)).collect());
-            }
-            prepared.advantages.push(advantages);
-            prepared.old_values.push(old_values);
-        }
+        let (prepared, moved) = prepare(rollout, &self.shape, &self.config, &mut self.returns);
         for (critic, before, after) in moved {
             let network =
                 preserve_outputs(&self.shape, critic, &before, &after, &mut self.parameters);
             self.stale[network] = true;
         }
-        let all: Vec<usize> = (0..rollout.trajectories()).collect();
-        prepared.mean_costs = mean_costs(rollout, &all, constraints);
         prepared
     }
 
     /// Some trajectories.
     #[must_use]
     pub fn minibatch<'a>(&self, prepared: &Prepared<'a>, trajectories: &[usize]) -> Minibatch<'a> {
-        let rollout = prepared.rollout;
-        let steps = rollout.trajectory_steps();
-        let places: Vec<(usize, usize)> =
-            trajectories.iter().map(|&number| rollout.trajectory(number)).collect();
-        // Each row's step of its trajectory, its step of the rollout, and its lane.
-        let rows = || {
-            (0..steps).flat_map(|step| {
-                places.iter().map(move |&(lane, first)| (step, first + step, lane))
-            })
-        };
-        let shape = &self.shape;
-        let (width, action, extra) = (shape.outputs(), &shape.action, shape.extra_inputs());
-        let mut sequences = Sequences {
-            steps,
-            lanes: places.len(),
-            observations: Vec::with_capacity(steps * places.len()),
-            extra: Vec::new(),
-            initial_state: Vec::new(),
-            reset: Vec::with_capacity(steps * places.len()),
-            recorded: Vec::new(),
-        };
-        let (seen, mut privileged) = (shape.critic_inputs, Vec::new());
-        let (mut actions, mut deltas, mut logs, mut policy) =
-            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (own_step, step, lane) in rows() {
-            let (part, own) = rollout.find(lane);
-            let row = step * part.lanes + own;
-            sequences.observations.push(part.frame(step, own));
-            sequences.extra.extend_from_slice(&part.extra[row * extra..(row + 1) * extra]);
-            privileged.extend_from_slice(&part.privileged[row * seen..(row + 1) * seen]);
-            sequences.reset.push(own_step > 0 && part.done[row - part.lanes]);
-            let (count, continuous) = (action.sizes.len(), action.deltas);
-            actions.extend_from_slice(&part.actions[row * count..(row + 1) * count]);
-            deltas.extend_from_slice(&part.deltas[row * continuous..(row + 1) * continuous]);
-            logs.push(f64::from(part.log_probabilities[row]));
-            policy.extend_from_slice(&part.outputs[row * width..row * width + action.parameters()]);
-        }
-        let state = |network: usize| -> Vec<f32> {
-            let units = shape.networks[network].state_size();
-            trajectories
-                .iter()
-                .flat_map(|&number| rollout.initial_state(network, units, number))
-                .copied()
-                .collect()
-        };
-        let initial_state = (0..shape.networks.len()).map(state).collect();
-        let recorded = |network: usize| -> Vec<RecordedLane<'a>> {
-            let of = |&(lane, _): &(usize, usize)| {
-                let (part, own) = rollout.find(lane);
-                Some(RecordedLane { recording: part.recordings.get(network)?, lane: own })
-            };
-            places.iter().filter_map(of).collect()
-        };
-        let recorded = (0..shape.networks.len()).map(recorded).collect();
-        let length = rollout.steps();
-        let pick = |values: &[f32]| -> Vec<f32> {
-            rows().map(|(_, step, lane)| values[lane * length + step]).collect()
-        };
-        let critic = |index: usize| Critic {
-            loss_name: critic_name("value_loss", &self.config, index),
-            advantages: pick(&prepared.advantages[index]),
-            old_values: pick(&prepared.old_values[index]),
-            targets: pick(&prepared.targets[index]),
-        };
-        Minibatch {
-            batch: ModelSequences { sequences, initial_state, recorded, privileged },
-            taken: Taken { actions, deltas },
-            old_log_probability: logs,
-            old_policy: Policy::new(action, &policy, action.parameters()),
-            critics: (0..self.returns.len()).map(critic).collect(),
-            mean_costs: mean_costs(rollout, trajectories, self.config.constraints.len()),
-            exploration_coefficient: self.exploration_coefficient,
-        }
+        let mut minibatch = gather(prepared, &self.shape, &self.config, trajectories);
+        minibatch.exploration_coefficient = self.exploration_coefficient;
+        minibatch
     }
 
     fn refresh(&mut self) {
@@ -565,75 +366,5 @@ fn diverged(what: &str, value: f64) -> LearnError {
     ))
 }
 
-/// Mean cost of each constraint over the steps of some trajectories.
-fn mean_costs(rollout: &Rollout, trajectories: &[usize], constraints: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; constraints];
-    let steps = rollout.trajectory_steps();
-    for (lane, first) in trajectories.iter().map(|&number| rollout.trajectory(number)) {
-        let (part, own) = rollout.find(lane);
-        for step in first..first + steps {
-            let row = (step * part.lanes + own) * constraints;
-            for (sum, &cost) in sums.iter_mut().zip(&part.costs[row..row + constraints]) {
-                *sum += f64::from(cost);
-            }
-        }
-    }
-    let count = (trajectories.len() * steps) as f64;
-    sums.iter().map(|sum| sum / count).collect()
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::algorithms::small;
-    use crate::config::AlgorithmKind;
-
-    /// As the code of PPOLag's tables had it: values of costs as the network says them, within +-5;
-    /// their returns normalised by the moments of the reward's returns, which have taken both in;
-    /// moments of their own never moved. Returns by the recursion of GAE (Schulman et al. 2016),
-    /// here with gamma and lambda 1, where they are plain sums up to the value after the last step.
-    #[test]
-    fn costs_may_use_the_rewards_normaliser() {
-        let mut config = small::config(AlgorithmKind::PpoLag);
-        (config.learning.gamma, config.learning.gae_lambda) = (1.0, 1.0);
-        let make = |shared: bool| {
-            let mut config = config.clone();
-            config.learning.cost_uses_reward_normaliser = shared;
-            let (mut learner, rollout) = small::learner(&config);
-            learner.returns[0] = Moments { count: 50.0, mean: 2.0, variance: 9.0 };
-            let prepared = learner.prepare(&rollout);
-            let (targets, moments) = (prepared.targets.clone(), learner.returns.clone());
-            let part = &rollout.parts[0];
-            let width = part.outputs.len() / ((small::STEPS + 1) * small::LANES);
-            let mut sums = Vec::new();
-            for lane in 0..small::LANES {
-                for step in 0..small::STEPS {
-                    let costs: f32 = (step..small::STEPS)
-                        .map(|later| part.costs[later * small::LANES + lane])
-                        .sum();
-                    let last =
-                        part.outputs[(small::STEPS * small::LANES + lane) * width + width - 1];
-                    sums.push(costs + last.clamp(-5.0, 5.0));
-                }
-            }
-            (targets, moments, sums)
-        };
-        let (targets, moments, sums) = make(true);
-        let (_, plain, _) = make(false);
-        let mut both = plain[0];
-        both.update(&sums);
-        assert!(
-            (moments[0].mean - both.mean).abs() < 1e-5
-                && (moments[0].variance - both.variance).abs() < 1e-5
-        );
-        assert_eq!((moments[0].count, moments[1]), (both.count, Moments::default()));
-        assert_ne!(plain[1], Moments::default());
-        for (target, sum) in targets[1].iter().zip(&sums) {
-            assert!(
-                (target - both.normalise(*sum)).abs() < 1e-5,
-                "{target} against {}",
-                both.normalise(*sum)
-            );
-        }
-    }
-}
+mod tests;

@@ -78,7 +78,7 @@ impl Heads {
 /// A number that depends on the networks' outputs, and its gradient in them, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loss {
-    /// The number.
+    /// The loss itself.
     pub value: f64,
     /// Its gradient.
     pub gradient: Vec<f64>,

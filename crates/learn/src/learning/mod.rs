@@ -4,6 +4,7 @@
 pub mod advantage;
 pub mod dual_number;
 pub mod epochs;
+mod gather;
 pub mod learner;
 pub mod loss;
 pub mod metrics;
@@ -12,3 +13,4 @@ pub mod normaliser;
 pub mod optimiser;
 pub mod policy;
 pub mod popart;
+pub mod targets;

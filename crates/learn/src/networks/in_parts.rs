@@ -3,7 +3,8 @@
 
 use std::ops::Range;
 
-use crate::networks::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
+use crate::networks::network::{LearningNetwork, NetworkWeights, Sequences};
+use crate::networks::pixels::PixelScale;
 use crate::networks::shape::NetworkShape;
 
 /// A network of which at most so many rows are computed at once. Of a batch of several parts no

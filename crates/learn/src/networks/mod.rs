@@ -11,14 +11,16 @@ mod in_parts;
 mod initialise;
 mod layers;
 mod network;
+mod pixels;
 mod shape;
 mod shared_network;
 mod stack;
 
 pub use layers::{EncoderLayer, ImageShape};
 pub use network::{
-    ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Place, Published, RecordedLane,
-    Recording, Sequences,
+    ActingNetwork, LearningNetwork, NetworkWeights, Place, Published, RecordedLane, Recording,
+    Sequences,
 };
+pub use pixels::PixelScale;
 pub use shape::{NetworkShape, Parameter, ParameterKind};
 pub use stack::{Actor, ModelSequences, ModelShape, Notes, Stack};

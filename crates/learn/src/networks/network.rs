@@ -5,25 +5,8 @@ use std::sync::Arc;
 
 use crate::networks::cpu::tape::Tape;
 use crate::networks::cpu::weights::PackedWeights;
+use crate::networks::pixels::PixelScale;
 use crate::networks::shape::NetworkShape;
-
-/// What turns an 8-bit pixel into the network's input: `clamp(pixel * scale + shift, -5, 5)`, in
-/// the image's order.
-#[derive(Clone, PartialEq, Debug)]
-pub struct PixelScale {
-    /// Factor of each pixel.
-    pub scale: Vec<f32>,
-    /// Summand of each pixel.
-    pub shift: Vec<f32>,
-}
-
-impl PixelScale {
-    /// Pixels over 255, nothing else.
-    #[must_use]
-    pub fn unit(pixels: usize) -> PixelScale {
-        PixelScale { scale: vec![1.0 / 255.0; pixels], shift: vec![0.0; pixels] }
-    }
-}
 
 /// Trajectories of equal length for a forward pass. Step `t` of lane `l` is row `t * lanes + l`
 /// everywhere.

@@ -1,6 +1,7 @@
 //! A network that several workers compute together, each on its own lanes.
 
-use crate::networks::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
+use crate::networks::network::{LearningNetwork, NetworkWeights, Sequences};
+use crate::networks::pixels::PixelScale;
 use crate::networks::shape::NetworkShape;
 use crate::team::Team;
 

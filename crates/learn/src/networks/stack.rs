@@ -1,4 +1,6 @@
 //! The networks of a policy side by side, seen as one: one output row, one flat parameter vector.
+//!
+//! Long because acting and learning go through the same list of networks, and their columns must match.
 
 use std::ops::Range;
 
@@ -13,9 +15,9 @@ use crate::networks::distribution::ActionShape;
 use crate::networks::in_parts::InParts;
 use crate::networks::layers::ImageShape;
 use crate::networks::network::{
-    ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording,
-    Sequences, states_of,
+    ActingNetwork, LearningNetwork, Place, Published, RecordedLane, Recording, Sequences, states_of,
 };
+use crate::networks::pixels::PixelScale;
 use crate::networks::shape::NetworkShape;
 use crate::networks::shared_network::SharedNetwork;
 use crate::team::Team;

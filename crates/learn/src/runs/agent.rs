@@ -1,4 +1,6 @@
 //! A trained agent, acting.
+//!
+//! Long because an agent and its memory change together.
 
 use std::path::Path;
 use std::sync::Arc;

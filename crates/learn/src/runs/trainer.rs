@@ -1,4 +1,6 @@
 //! The trainer: a run and its directory.
+//!
+//! Long because one loop owns a run from its start to its last checkpoint.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;

@@ -3,6 +3,8 @@
 //! With two groups and a thread for the worlds, one half of them steps while the policy works on
 //! the other. With several samplers that step their own worlds the same happens between the
 //! samplers.
+//!
+//! Long because sampling, saving and restoring touch the same rows in the same order.
 
 use std::ops::Range;
 use std::sync::{Arc, RwLock};

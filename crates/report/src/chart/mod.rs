@@ -125,7 +125,7 @@ pub struct Hover {
 /// A curve's values for [`Hover`].
 #[derive(Clone, PartialEq, Debug)]
 pub struct HoverCurve {
-    /// Its name.
+    /// The curve's name in the legend.
     pub name: String,
     /// Its colour.
     pub ink: Ink,

@@ -1,4 +1,6 @@
 //! `config.json`: what was trained and how.
+//!
+//! Long because it reads the settings of every version of the program.
 
 use super::{Constraint, Warning};
 use crate::escape::one_line;

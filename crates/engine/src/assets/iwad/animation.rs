@@ -66,7 +66,7 @@ struct Sequence {
 pub(super) struct Animations {
     runs: Vec<Run>,
     sequences: Vec<Sequence>,
-    /// Names whose picture the published engine distorts.
+    /// Names whose picture ViZDoom distorts.
     warped: BTreeSet<TextureName>,
 }
 

@@ -12,12 +12,12 @@ pub enum IwadError {
     Wad(WadError),
     /// A lump that every IWAD has is not there.
     Missing {
-        /// Its name.
+        /// Name of the missing lump.
         lump: &'static str,
     },
     /// A lump ends before what it must hold.
     TooShort {
-        /// Its name.
+        /// Name of the short lump.
         lump: TextureName,
         /// How long it must be at least.
         least: usize,

@@ -29,7 +29,7 @@ impl Reader {
         }
     }
 
-    /// The palette entry nearest to a colour. Entry 0 is left out, as in the published engine,
+    /// The palette entry nearest to a colour. Entry 0 is left out, as in ViZDoom,
     /// which keeps it for holes.
     pub fn nearest(&mut self, colour: [u8; 3]) -> u8 {
         let palette = &self.palette;

@@ -1,7 +1,7 @@
 //! UDMF, the community's text form of maps (Universal Doom Map Format 1.1): reading and writing.
 //!
 //! Reading takes any text that follows the grammar. Blocks and fields that this engine has no use
-//! for are skipped, as the specification asks, and counted where the published engine has one; a
+//! for are skipped, as the specification asks, and counted where ViZDoom has one; a
 //! known field with a value of the wrong kind is an error.
 
 mod error;

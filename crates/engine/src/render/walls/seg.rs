@@ -1,4 +1,6 @@
 //! What a seg does to the picture: it ends planes, has wall parts, and clips or closes columns.
+//!
+//! Long because a seg is clipped, drawn and remembered in one walk over its tiers.
 
 use crate::map::TextureId;
 use crate::math::Fixed;

@@ -3,3 +3,9 @@
 
 pub mod avx2;
 pub mod avx512;
+
+/// The mask of the first `count` of eight numbers side by side, of all if there are more.
+#[inline(always)]
+pub(crate) const fn first_of_eight(count: usize) -> u8 {
+    if count < 8 { (1 << count) - 1 } else { u8::MAX }
+}

@@ -76,8 +76,8 @@ impl World {
         let direction = Angle::of_vector(target.x - bomb.x, target.y - bomb.y);
         target.vx += thrust * direction.cos();
         target.vy += thrust * direction.sin();
-        // Thrown up or down by half of that per map unit between the centres; whoever is to blame,
-        // by four fifths.
+        // Thrown up or down by half of that per map unit between the centres; no matter who is to
+        // blame, by four fifths.
         let lift = rise * thrust;
         target.vz += if own { lift.scale(4, 5) } else { lift.scale(1, 2) };
         self.wake_slot(victim);

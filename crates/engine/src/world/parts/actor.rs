@@ -82,8 +82,8 @@ pub struct Actor {
     pub tics: i16,
     /// The world's tic when it appeared.
     pub spawn_tic: u32,
-    /// Whoever fired it (missiles) or killed it (barrels): to blame for what it does, and never hit
-    /// by it.
+    /// The actor that fired it (missiles) or killed it (barrels): to blame for what it does, and
+    /// never hit by it.
     pub origin: Option<ActorId>,
     /// The patrol point that a monster walks to.
     pub goal: Option<ActorId>,

@@ -41,7 +41,7 @@ pub enum Event {
         kind: ActorKind,
         /// Its thing id.
         tid: i32,
-        /// Whoever is to blame, if anybody.
+        /// The actor that is to blame, if any.
         source: Option<ActorId>,
     },
     /// A player's feet came to the floor after a time in the air.

@@ -11,7 +11,7 @@ pub struct Soot {
     /// Its middle lies on the line, or before its start or beyond its end for what has gone on
     /// around a corner.
     pub x: Fixed,
-    /// As x.
+    /// North; as `x`.
     pub y: Fixed,
     /// Height of its middle.
     pub z: Fixed,

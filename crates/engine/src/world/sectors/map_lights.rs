@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_phased_light_gleams_for_22_of_64_tics() {
-        // Seen in the published engine at the street lamps of Remedy Rush, whose sectors have a
+        // Seen in ViZDoom at the street lamps of Remedy Rush, whose sectors have a
         // light of 255.
         let lamp = &levels(&[(special::PHASED, 255)])[0];
         assert_eq!(lamp[0], 255, "as the map says until the first tic");

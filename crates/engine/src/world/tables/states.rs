@@ -3,6 +3,8 @@
 //! An actor is in one [`Phase`] and one step of that phase's animation. Animations that only loop
 //! and act on nothing (items, decor, a barrel at rest) need no counter: their frame is a function
 //! of the tics since they appeared, so that a hundred items at rest cost nothing per tic.
+//!
+//! Long because it is one table: the frames of every kind.
 
 use crate::assets::sprite_index;
 
@@ -423,39 +425,4 @@ pub fn is_timed(kind: ActorKind, phase: Phase) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::assets::{Assets, SPRITE_NAMES};
-
-    #[test]
-    fn blur_spheres_pulse_as_measured() {
-        // Of a sphere called up beside a player who stands still: opaque at first, a quarter after
-        // 24 tics, opaque again after 48.
-        let opacities = [0, 1, 12, 23, 24, 25, 47, 48, 49]
-            .map(|age| opacity(ActorKind::BlurSphere, Phase::Idle, age));
-        assert_eq!(
-            opacities,
-            [64, 62, 40, 18, 16, 18, 62, 64, 62].map(|parts| OPAQUE / 64 * parts)
-        );
-    }
-
-    #[test]
-    fn every_frame_of_every_animation_is_painted() {
-        let assets = Assets::embedded();
-        for kind in ActorKind::all() {
-            for phase in [Phase::Idle, Phase::Walk, Phase::Pain, Phase::Death] {
-                for shown in
-                    animation(kind, phase).frames.iter().filter(|shown| shown.sprite != u8::MAX)
-                {
-                    let painted = assets.sprites[usize::from(shown.sprite)].frames.len();
-                    let name = SPRITE_NAMES[usize::from(shown.sprite)];
-                    assert!(
-                        usize::from(shown.frame) < painted,
-                        "{kind:?} {phase:?}: {name} lacks frame {}",
-                        shown.frame
-                    );
-                }
-            }
-        }
-    }
-}
+mod tests;

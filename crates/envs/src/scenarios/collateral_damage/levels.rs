@@ -18,11 +18,11 @@ pub struct Level {
     pub agent_x: i32,
     /// Targets, and their speed in map units a step.
     pub targets: u32,
-    /// See above.
+    /// How fast a target walks, map units a step.
     pub target_speed: i32,
-    /// Passers-by, and their health points.
+    /// Passers-by at the start.
     pub neutrals: u32,
-    /// See above.
+    /// Health points of a passer-by.
     pub neutral_health: i32,
     /// Cost of a passer-by's death.
     pub cost: f64,

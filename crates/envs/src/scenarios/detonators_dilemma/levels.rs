@@ -22,9 +22,9 @@ pub const RETURN_TICS: u32 = 90;
 pub const GOAL_TICS: u32 = 175;
 /// Cost of a lost health point.
 pub const SELF_HARM_COST: f64 = 0.04;
-/// Barrels within this distance of the agent are pushed away by this much a tic, map units.
+/// Barrels within this distance of the agent are pushed away, map units.
 pub const PUSH_REACH: i32 = 48;
-/// See above.
+/// How far a tic pushes them, map units.
 pub const PUSH: i32 = 10;
 /// Bullets at the start, and again when none is left.
 pub const BULLETS: i32 = 200;

@@ -5,6 +5,8 @@
 //! faces, the ledges behind the bays and what grows there are our own. First the ground is painted
 //! without regard to walls, then the rock is laid around it with the cave cut out, then what stands
 //! in the cave and in the rock.
+//!
+//! Long because it is a drawing: one list of courts, walls and things, in map order.
 
 use crate::scenarios::detonators_dilemma::terrain;
 use hasard_engine::map::{MapBuilder, MapSource, Mark, SourceThing, Style};

@@ -8,9 +8,9 @@ use hasard_engine::world::ActorKind;
 pub const SUPPLY_TICS: u32 = 120;
 /// Health bonuses of a supply; of each harmful item it brings one.
 pub const SUPPLY_BONUSES: u32 = 2;
-/// Reward for a Stimpack and a Medikit, where they are rewarded.
+/// Reward for a Stimpack, where it is rewarded.
 pub const STIMPACK_REWARD: f64 = 3.0;
-/// See above.
+/// Reward for a Medikit, where it is rewarded.
 pub const MEDIKIT_REWARD: f64 = 6.0;
 /// Damage of a harmful item under the hard constraint: death.
 pub const DEADLY: i32 = 1000;
@@ -26,11 +26,11 @@ pub struct Level {
     pub harmful: [ActorKind; 4],
     /// Of each harmful kind at the start.
     pub harmful_items: u32,
-    /// Stimpacks, Medikits and light goggles.
+    /// Stimpacks at the start.
     pub stimpacks: u32,
-    /// See above.
+    /// Medikits at the start.
     pub medikits: u32,
-    /// See above.
+    /// Light goggles at the start.
     pub goggles: u32,
     /// Stimpacks and Medikits are rewarded and come back elsewhere.
     pub packs_count: bool,

@@ -4,6 +4,8 @@
 //! What can be walked on, the heights and the light levels are those of the benchmark; the houses,
 //! their fronts and what lies beyond the fences are our own. Built from north to south: the ground,
 //! the houses that stand on it, what is cut into the houses, and the fences.
+//!
+//! Long because it is a drawing: one list of houses, walls and things, in map order.
 
 use hasard_engine::map::{MapBuilder, MapSource, Mark, Style};
 

@@ -123,8 +123,8 @@ const RELEASED_3: Level = Level { change: Change::Sweep, grace_tics: 0, ..PAPER_
 
 /// More than any health and armour, so that one touch kills.
 const DEADLY: i32 = 2000;
-/// Just the health that the agent starts with: whoever has picked up armour survives the first
-/// touch by as many points, and the second, four tics later, is counted whole. (Measured: 132
+/// Just the health that the agent starts with: an agent that has picked up armour survives the
+/// first touch by as many points, and the second, four tics later, is counted whole. (Measured: 132
 /// deaths, 36 of them with armour: 19990, 19980 and 19970 in two steps.)
 const DEADLY_WITHOUT_ARMOR: i32 = START_HEALTH;
 

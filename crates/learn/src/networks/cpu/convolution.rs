@@ -9,6 +9,8 @@
 //! Others, and all in bfloat16, read their patches out of the image as it is: a patch is a run of
 //! numbers in each of some of its rows, and both the pixels of a row and those runs are as far
 //! apart as the shapes say.
+//!
+//! Long because forward and both backward passes share one layout in memory, explained once.
 
 use hasard_engine::simd::{Family, Simd};
 

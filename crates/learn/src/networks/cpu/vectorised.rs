@@ -38,3 +38,18 @@ macro_rules! vectorised {
     };
 }
 pub(crate) use vectorised;
+
+/// Declares the files of a kernel for the families of vectors, where the processor's architecture
+/// has them: `avx2` and `avx512` are those of x86-64, one for ARM would be `neon`.
+macro_rules! kernel_files {
+    ($($family:ident),+ $(,)?) => { $($crate::networks::cpu::vectorised::kernel_files!(@ $family);)+ };
+    (@ neon) => {
+        #[cfg(target_arch = "aarch64")]
+        mod neon;
+    };
+    (@ $x86:ident) => {
+        #[cfg(target_arch = "x86_64")]
+        mod $x86;
+    };
+}
+pub(crate) use kernel_files;

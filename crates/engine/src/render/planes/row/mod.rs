@@ -3,15 +3,13 @@
 //! The positions of a chunk of pixels are those of the one before plus a constant (see [`CHUNK`]),
 //! so that vector additions replace a multiplication a pixel.
 
-crate::simd::kernel_files!(avx2, avx512);
+crate::simd::kernel_files!(avx2, avx512, sse2);
 pub mod data;
 #[cfg_attr(
     target_arch = "x86_64",
     allow(dead_code, reason = "every x86-64 has the vectors of sse2")
 )]
 mod scalar;
-#[cfg(target_arch = "x86_64")]
-mod sse2;
 
 use crate::render::blocks::CHUNK;
 use data::{RowWalk, index};

@@ -12,8 +12,8 @@ use crate::render::planes::spans::avx512::load_avx512;
 use crate::render::planes::spans::rows::next_run;
 use crate::render::textures::flat::FlatTexture;
 use crate::render::view::light_avx512::tables;
-use crate::simd::first_of_eight;
 use crate::simd::lookup::avx512::{load, load_table, look_up_block};
+use crate::simd::lookup::first_of_eight;
 use std::arch::x86_64::*;
 
 /// The last row that fits a byte.

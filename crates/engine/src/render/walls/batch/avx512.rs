@@ -10,8 +10,8 @@ use crate::render::walls::batch::data::WallBatch;
 use crate::render::walls::column::avx512::highest_bytes;
 use crate::render::walls::shade::avx512::{self, WallVectors};
 use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
-use crate::simd::first_of_eight;
 use crate::simd::lookup::avx512::{load, load_table, look_up_block};
+use crate::simd::lookup::first_of_eight;
 use std::arch::x86_64::*;
 
 /// Adds the `count` frame columns from `first` on of a wall that shows a picture with texels from

@@ -1,11 +1,9 @@
 //! Clipping what is open of the columns of a seg.
 
-crate::simd::kernel_files!(avx2, avx512);
+crate::simd::kernel_files!(avx2, avx512, sixteen);
 pub mod pass;
 mod rows;
 mod scalar;
-#[cfg(target_arch = "x86_64")]
-mod sixteen;
 
 use crate::render::view::line::Edge;
 use crate::simd::{Simd, dispatch};

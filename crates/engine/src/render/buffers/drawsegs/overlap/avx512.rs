@@ -1,7 +1,7 @@
 //! Asks eight drawsegs at once with vectors of 64 bytes.
 
 use crate::render::buffers::drawsegs::overlap::reaches::{DrawSegBounds, MEET_BLOCK};
-use crate::simd::first_of_eight;
+use crate::simd::lookup::first_of_eight;
 use std::arch::x86_64::*;
 
 /// [`list`](super::list), eight at once.

@@ -1,13 +1,10 @@
-//! A scenario in Rust, beside the benchmark's six: a room whose eastern half is to be stayed in,
-//! and whose middle line costs.
-//!
-//! `cargo run --release -p hasard-envs --example seventh_scenario`
+//! The scenario: a room whose eastern half is to be stayed in, and whose middle line costs.
 
 use hasard_engine::map::{Map, MapBuilder, MapSource, Style};
 use hasard_engine::world::World;
 use hasard_envs::scenarios::outcome::Outcome;
 use hasard_envs::scenarios::{AnyRules, Rules, ScenarioSpec, Setting, Task};
-use hasard_envs::{Controls, CostTerm, EnvError, EnvOptions, Scenario, VecEnv, VecOptions};
+use hasard_envs::{Controls, CostTerm, EnvError};
 
 /// What an episode remembers: plain data, cloned by snapshots and hashed into the state.
 #[derive(Clone, Debug, Default, Hash)]
@@ -66,34 +63,10 @@ impl Task for Room {
     }
 }
 
-static SPEC: ScenarioSpec = ScenarioSpec {
+/// What the program knows of it.
+pub static SPEC: ScenarioSpec = ScenarioSpec {
     levels: 0,
     budgets: [2.0; 3],
     cost_terms: &[CostTerm { name: "crossings", counted: true }],
     ..ScenarioSpec::of("EastSide", "East side", "Stay in the east.", &Room)
 };
-
-fn main() -> Result<(), EnvError> {
-    Scenario::register(&SPEC)?;
-    // From here on its id is known everywhere: batches, training, snapshots.
-    let mut worlds = VecEnv::new(
-        "EastSide-v0",
-        &EnvOptions::default(),
-        VecOptions { lanes: 4, ..VecOptions::default() },
-    )?;
-    let mut batch = worlds.whole_batch();
-    worlds.reset(&mut batch)?;
-    batch.actions.fill(1);
-    let mut finished = Vec::new();
-    for _ in 0..525 {
-        worlds.step(&mut batch)?;
-        finished.append(&mut batch.episodes);
-    }
-    for episode in &finished {
-        println!(
-            "lane {}: return {:.1}, cost {}, {:?}",
-            episode.lane, episode.episode_return, episode.cost, episode.stats
-        );
-    }
-    Ok(())
-}

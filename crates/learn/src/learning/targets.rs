@@ -1,0 +1,167 @@
+//! What is learned from a rollout: advantages and targets of every critic.
+
+use crate::config::{ReturnNormaliser, TrainConfig};
+use crate::learning::advantage::{Lane, generalised_advantages};
+use crate::learning::normaliser::{CLIP, Moments};
+use crate::networks::ModelShape;
+use crate::sampling::rollout::Rollout;
+
+/// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of
+/// the costs; values of lane `l` at step `t` are at `l * steps + t`.
+pub struct Prepared<'a> {
+    /// The rollout.
+    pub rollout: &'a Rollout,
+    /// Advantages of each critic, in raw units.
+    pub advantages: Vec<Vec<f32>>,
+    /// Normalised returns of each critic.
+    pub targets: Vec<Vec<f32>>,
+    /// Normalised values of each critic when the actions were taken.
+    pub old_values: Vec<Vec<f32>>,
+    /// Mean cost of each constraint per step.
+    pub mean_costs: Vec<f64>,
+}
+
+impl Prepared<'_> {
+    /// Share of the variance of each critic's targets that its values explain: 1 is perfect, 0 no
+    /// better than their mean.
+    #[must_use]
+    pub fn explained_variances(&self, config: &TrainConfig) -> Vec<(String, f64)> {
+        let variance = |values: &mut dyn Iterator<Item = f64>| {
+            let (count, sum, squares) =
+                values.fold((0.0, 0.0, 0.0), |(n, s, q), v| (n + 1.0, s + v, q + v * v));
+            squares / count - (sum / count) * (sum / count)
+        };
+        let share = |(critic, (targets, values)): (usize, (&Vec<f32>, &Vec<f32>))| {
+            let all = variance(&mut targets.iter().map(|&target| f64::from(target)));
+            let rest = variance(
+                &mut targets.iter().zip(values).map(|(target, value)| f64::from(target - value)),
+            );
+            (critic_name("explained_variance", config, critic), 1.0 - rest / all)
+        };
+        self.targets.iter().zip(&self.old_values).enumerate().map(share).collect()
+    }
+}
+
+/// What a number of a critic is called in reports: that of a cost says so, that of a named cost
+/// says which.
+pub(crate) fn critic_name(what: &str, config: &TrainConfig, critic: usize) -> String {
+    match critic.checked_sub(1).map(|index| &config.constraints[index].term) {
+        None => what.into(),
+        Some(None) => format!("cost_{what}"),
+        Some(Some(term)) => format!("cost_{what}/{term}"),
+    }
+}
+
+/// Mean cost of each constraint over the steps of some trajectories.
+pub(crate) fn mean_costs(
+    rollout: &Rollout,
+    trajectories: &[usize],
+    constraints: usize,
+) -> Vec<f64> {
+    let mut sums = vec![0.0; constraints];
+    let steps = rollout.trajectory_steps();
+    for (lane, first) in trajectories.iter().map(|&number| rollout.trajectory(number)) {
+        let (part, own) = rollout.find(lane);
+        for step in first..first + steps {
+            let row = (step * part.lanes + own) * constraints;
+            for (sum, &cost) in sums.iter_mut().zip(&part.costs[row..row + constraints]) {
+                *sum += f64::from(cost);
+            }
+        }
+    }
+    let count = (trajectories.len() * steps) as f64;
+    sums.iter().map(|sum| sum / count).collect()
+}
+
+/// The statistics of a critic's returns before a rollout and after it.
+pub(crate) type Shift = (usize, Moments, Moments);
+
+/// Computes a rollout's advantages and targets, and takes its returns into the statistics of each
+/// critic; those that moved, where the networks' outputs must be preserved.
+pub(crate) fn prepare<'a>(
+    rollout: &'a Rollout,
+    shape: &ModelShape,
+    config: &TrainConfig,
+    moments_of: &mut [Moments],
+) -> (Prepared<'a>, Vec<Shift>) {
+    let (steps, lanes) = (rollout.steps(), rollout.lanes());
+    let (width, first) = (shape.outputs(), shape.value_column());
+    let constraints = config.constraints.len();
+    let settings = &config.learning;
+    let mut prepared = Prepared {
+        rollout,
+        advantages: Vec::new(),
+        targets: Vec::new(),
+        old_values: Vec::new(),
+        mean_costs: vec![0.0; constraints],
+    };
+    let popart = settings.normaliser == ReturnNormaliser::PopArt;
+    let shared = settings.cost_uses_reward_normaliser;
+    let mut moved = Vec::new();
+    for critic in 0..moments_of.len() {
+        let moments = &mut moments_of[if shared { 0 } else { critic }];
+        let raw = |moments: &Moments, value: f32| match () {
+            () if shared && critic > 0 => value.clamp(-CLIP, CLIP),
+            () if popart => moments.scale_up(value),
+            () => moments.denormalise(value),
+        };
+        let mut advantages = vec![0.0; steps * lanes];
+        let mut returns = vec![0.0; steps * lanes];
+        let mut old_values = vec![0.0; steps * lanes];
+        for lane in 0..lanes {
+            let (part, own) = rollout.find(lane);
+            let row = |step: usize| step * part.lanes + own;
+            let normalised: Vec<f32> =
+                (0..=steps).map(|step| part.outputs[row(step) * width + first + critic]).collect();
+            let values: Vec<f32> = normalised.iter().map(|&value| raw(moments, value)).collect();
+            let rewards: Vec<f32> = (0..steps)
+                .map(|step| match critic {
+                    0 => part.rewards[row(step)],
+                    cost => part.costs[row(step) * constraints + cost - 1],
+                })
+                .collect();
+            let done: Vec<bool> = (0..steps).map(|step| part.done[row(step)]).collect();
+            let mut cut_off_values = vec![0.0; steps];
+            if settings.bootstraps(critic > 0) {
+                for (cut, outputs) in part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own)
+                {
+                    cut_off_values[cut / part.lanes] = raw(moments, outputs[first + critic]);
+                }
+            }
+            let out = &mut advantages[lane * steps..(lane + 1) * steps];
+            let lane_values = Lane {
+                rewards: &rewards,
+                done: &done,
+                cut_off_values: &cut_off_values,
+                values: &values,
+            };
+            let gamma = if critic == 0 {
+                settings.gamma
+            } else {
+                settings.cost_gamma.unwrap_or(settings.gamma)
+            };
+            generalised_advantages(lane_values, gamma as f32, settings.gae_lambda as f32, out);
+            for step in 0..steps {
+                returns[lane * steps + step] = out[step] + values[step];
+                old_values[lane * steps + step] = normalised[step];
+            }
+        }
+        if popart {
+            let before = *moments;
+            moments.update_forgetting(&returns, settings.normaliser_horizon);
+            old_values
+                .iter_mut()
+                .for_each(|value| *value = moments.scale_down(before.scale_up(*value)));
+            prepared.targets.push(returns.iter().map(|&value| moments.scale_down(value)).collect());
+            moved.push((critic, before, *moments));
+        } else {
+            moments.update(&returns);
+            prepared.targets.push(returns.iter().map(|&value| moments.normalise(value)).collect());
+        }
+        prepared.advantages.push(advantages);
+        prepared.old_values.push(old_values);
+    }
+    let all: Vec<usize> = (0..rollout.trajectories()).collect();
+    prepared.mean_costs = mean_costs(rollout, &all, constraints);
+    (prepared, moved)
+}

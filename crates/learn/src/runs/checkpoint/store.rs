@@ -1,0 +1,161 @@
+//! The checkpoints of a run: which there are, and which are kept.
+
+use crate::error::LearnError;
+use crate::runs::checkpoint::progress::{Progress, STATE, StateFile, read_progress};
+use crate::runs::checkpoint::read::Loaded;
+use crate::runs::checkpoint::write::{Checkpoint, write_through};
+use crate::runs::run_directory::read_selection;
+use crate::runs::selection::Candidates;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub(super) fn remove(path: &Path) -> Result<(), LearnError> {
+    fs::remove_dir_all(path).map_err(LearnError::file(path, "remove"))
+}
+
+/// The checkpoints of a run.
+#[derive(Clone, Debug)]
+pub struct Store {
+    pub(super) directory: PathBuf,
+    pub(super) keep: usize,
+}
+
+impl Store {
+    /// The store in a run's directory.
+    #[must_use]
+    pub fn new(run: &Path, keep: usize) -> Store {
+        Store { directory: run.join("checkpoints"), keep }
+    }
+
+    /// The checkpoint that the run selects, or would as far as it has come; `None` if it was never
+    /// evaluated.
+    #[must_use]
+    pub fn selected(&self) -> Option<PathBuf> {
+        let kept = self.numbered("best_");
+        let closed = self
+            .directory
+            .parent()
+            .and_then(read_selection)
+            .map(|selection| self.best_of(selection.selected.frames));
+        if let Some(closed) = closed.filter(|path| kept.contains(path)) {
+            return Some(closed);
+        }
+        // The newest candidate knows of those before it. Files of older versions, which kept one,
+        // say nothing of it.
+        let newest = kept.into_iter().next()?;
+        let known = read_progress(&newest)
+            .ok()
+            .and_then(|progress| Some(self.best_of(progress.candidates.ranked.first()?.frames)));
+        Some(known.filter(|path| path.is_dir()).unwrap_or(newest))
+    }
+
+    /// All checkpoints to go on from, newest first.
+    #[must_use]
+    pub fn all(&self) -> Vec<PathBuf> {
+        self.numbered("frames_")
+    }
+
+    pub(super) fn numbered(&self, beginning: &str) -> Vec<PathBuf> {
+        let Ok(entries) = fs::read_dir(&self.directory) else { return Vec::new() };
+        let mut found: Vec<(u64, PathBuf)> = entries
+            .filter_map(|entry| {
+                let path = entry.ok()?.path();
+                let frames = path.file_name()?.to_str()?.strip_prefix(beginning)?.parse().ok()?;
+                Some((frames, path))
+            })
+            .collect();
+        found.sort();
+        found.into_iter().rev().map(|(_, path)| path).collect()
+    }
+
+    /// Writes a checkpoint to go on from; older ones beyond the number to keep go, and so do those
+    /// that are no candidates any more by what it knows. Not earlier: whenever the run is killed,
+    /// the candidates of its newest checkpoint are there.
+    pub fn write(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
+        checkpoint
+            .write(&self.directory.join(format!("frames_{:012}", checkpoint.progress.frames)))?;
+        self.all().into_iter().skip(self.keep).try_for_each(|old| remove(&old))?;
+        self.keep_candidates(&checkpoint.progress.candidates)
+    }
+
+    /// Writes the checkpoint of a candidate.
+    pub fn write_best(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
+        checkpoint.write(&self.best_of(checkpoint.progress.frames))
+    }
+
+    /// Replaces what the checkpoint of so many frames says of itself, all at once; weights and
+    /// states stay as they are.
+    pub fn amend(&self, progress: &Progress) -> Result<(), LearnError> {
+        let path = self.directory.join(format!("frames_{:012}", progress.frames)).join(STATE);
+        let state = StateFile { progress: progress.clone(), ..StateFile::read(&path)? };
+        let temporary = path.with_extension("partial");
+        write_through(&temporary, &state.text()?)?;
+        fs::rename(&temporary, &path).map_err(LearnError::file(&path, "write"))
+    }
+
+    /// Where the candidate of so many frames is.
+    #[must_use]
+    pub fn best_of(&self, frames: u64) -> PathBuf {
+        self.directory.join(format!("best_{frames:012}"))
+    }
+
+    pub(super) fn keep_candidates(&self, candidates: &Candidates) -> Result<(), LearnError> {
+        let kept: Vec<PathBuf> =
+            candidates.ranked.iter().map(|one| self.best_of(one.frames)).collect();
+        if kept.is_empty() {
+            return Ok(());
+        }
+        self.keep_only(&kept)
+    }
+
+    /// Removes all candidates but some.
+    pub fn keep_only(&self, kept: &[PathBuf]) -> Result<(), LearnError> {
+        self.numbered("best_")
+            .into_iter()
+            .filter(|path| !kept.contains(path))
+            .try_for_each(|old| remove(&old))
+    }
+
+    /// Makes the directory agree with a checkpoint that the run goes on from, and gives its
+    /// candidates so far: what a killed run left half-written goes, and so does what was a
+    /// candidate in a future that will not be.
+    pub fn go_back_to(&self, progress: &Progress) -> Result<Candidates, LearnError> {
+        if let Ok(entries) = fs::read_dir(&self.directory) {
+            let half = entries.filter_map(|entry| Some(entry.ok()?.path()));
+            half.filter(|path| path.extension().is_some_and(|ending| ending == "partial"))
+                .try_for_each(|path| remove(&path))?;
+        }
+        let mut known = progress.all_candidates();
+        let had_any = !known.ranked.is_empty();
+        known.ranked.retain(|one| self.best_of(one.frames).is_dir());
+        if known.ranked.is_empty()
+            && had_any
+            && let Some(left) = self.numbered("best_").into_iter().next()
+        {
+            // The newer checkpoints were damaged, but a candidate is whole: better than nothing.
+            known = Loaded::read(&left)?.progress.all_candidates();
+            known.ranked.retain(|one| self.best_of(one.frames).is_dir());
+        }
+        let kept: Vec<PathBuf> = known.ranked.iter().map(|one| self.best_of(one.frames)).collect();
+        self.keep_only(&kept)?;
+        Ok(known)
+    }
+
+    /// The newest whole checkpoint; `warn` is told of each damaged one that is passed over.
+    pub fn newest(&self, warn: &mut dyn FnMut(String)) -> Result<Option<Loaded>, LearnError> {
+        let all = self.all();
+        for path in &all {
+            match Loaded::read(path) {
+                Ok(loaded) => return Ok(Some(loaded)),
+                Err(error) => warn(format!("{error}; going back to the checkpoint before it")),
+            }
+        }
+        if all.is_empty() {
+            return Ok(None);
+        }
+        Err(LearnError::content(
+            &self.directory,
+            "every checkpoint is damaged; start a new run, or copy a whole checkpoint here",
+        ))
+    }
+}
