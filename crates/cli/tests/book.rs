@@ -48,7 +48,7 @@ fn shortened(command: &str, number: usize) -> String {
     let mut rest = words.iter();
     while let Some(word) = rest.next() {
         let film = words[0] == "eval" && word == "-o";
-        if film || matches!(word.as_str(), "--frames" | "--episodes" | "--threads") {
+        if film || matches!(word.as_str(), "--frames" | "--episodes" | "--threads" | "--seconds") {
             rest.next();
         } else {
             kept.push(word.as_str());
@@ -68,6 +68,8 @@ fn shortened(command: &str, number: usize) -> String {
         "highlights" => "--episodes 1 --size 64x48".into(),
         "site" => concat!("--root ", env!("CARGO_MANIFEST_DIR"), "/../..").into(),
         "bench" => "--threads 2 --seconds 0.1".into(),
+        "highlights" => "--episodes 1 --seconds 1 --size 64x48".into(),
+        "site" => format!("--root {}", std::fs::canonicalize("../..").unwrap().display()),
         "serve" => "--listen 127.0.0.1:0".into(),
         "sweep" if has("--dry-run") => String::new(),
         "sweep" => "--dry-run".into(),
