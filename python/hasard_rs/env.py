@@ -201,7 +201,8 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
         # Not by the constructor: a subclass's has other arguments.
         self._build(state["arguments"])
         self.load(state["saved"])
-        self.__dict__.update(state["kept"])
+        # A copy: arrays that came through shared memory, as Ray's do, cannot be written to.
+        self.__dict__.update(copy.deepcopy(state["kept"]))
 
 
 def entry(**arguments: Any) -> gymnasium.Env[Any, Any]:

@@ -465,4 +465,5 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["arguments"])  # type: ignore[misc]
         self._infos.load(state["saved"])
-        self.__dict__.update(state["kept"])
+        # A copy: arrays that came through shared memory, as Ray's do, cannot be written to.
+        self.__dict__.update(copy.deepcopy(state["kept"]))

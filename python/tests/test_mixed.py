@@ -101,3 +101,16 @@ def test_the_full_space_is_one_for_all(ids: list[str]) -> None:
     single = hasard_rs.make("RemedyRushLevel1-v0", full_actions=True)
     assert len(worlds.action_masks[0]) == sum(worlds.worlds.nvec) and worlds.worlds.num_deltas == 2
     assert single.action_space is not None
+
+
+def test_a_pickle_whose_arrays_are_read_only_can_be_stepped() -> None:
+    """Ray lays arrays of a pickle into memory that nobody may write to."""
+    worlds = hasard_rs.make_vec("RemedyRushLevel1-v0", 3, resolution="64x48", autoreset_mode="NextStep")
+    worlds.reset(seed=2)
+    buffers: list[pickle.PickleBuffer] = []
+    data = pickle.dumps(worlds, protocol=5, buffer_callback=buffers.append)
+    assert buffers
+    copy = pickle.loads(data, buffers=[bytes(buffer.raw()) for buffer in buffers])
+    actions = np.ones((3, 4), int)
+    assert np.array_equal(worlds.step(actions)[0], copy.step(actions)[0])
+    copy.reset(seed=2)

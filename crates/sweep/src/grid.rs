@@ -26,7 +26,7 @@ pub enum OptionValue {
 pub struct Grid {
     /// Scenario names (then every level is combined with each) or whole environment ids.
     pub scenarios: Vec<String>,
-    /// Levels, for scenario names.
+    /// Levels, for scenario names and files of own tasks.
     pub levels: Vec<u32>,
     /// Algorithms.
     pub algorithms: Vec<String>,
@@ -177,6 +177,13 @@ impl Grid {
             .flat_map(|scenario| {
                 if scenarios().contains(&scenario.as_str()) {
                     self.levels.iter().map(|level| format!("{scenario}Level{level}-v0")).collect()
+                } else if scenario.ends_with(".toml") {
+                    // The file itself is its first level.
+                    let of_level = |level: &u32| match level {
+                        1 => scenario.clone(),
+                        level => format!("{scenario}#{level}"),
+                    };
+                    self.levels.iter().map(of_level).collect()
                 } else {
                     vec![scenario.clone()]
                 }
@@ -222,7 +229,8 @@ impl Grid {
                 && !text.starts_with(['-', '.'])
         };
         for environment in &self.scenarios {
-            let own_file = environment.ends_with(".toml")
+            let path = environment.rsplit_once('#').map_or(environment.as_str(), |(path, _)| path);
+            let own_file = path.ends_with(".toml")
                 && !environment.starts_with('-')
                 && !environment.contains(char::is_control);
             let like_an_id = environment.contains("-v") && plain(environment) || own_file;

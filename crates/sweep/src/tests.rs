@@ -463,3 +463,16 @@ fn the_guide_has_every_experiment_with_its_size() {
         );
     }
 }
+
+/// A file of an own task has its levels as a scenario has; one level of it is named with `#`.
+#[test]
+fn files_of_own_tasks_have_levels() {
+    let grid = |scenarios: &[&str], levels: &[u32]| Grid {
+        scenarios: scenarios.iter().map(ToString::to_string).collect(),
+        levels: levels.to_vec(),
+        ..Grid::default()
+    };
+    assert_eq!(grid(&["a.toml"], &[1]).environments(), ["a.toml"]);
+    assert_eq!(grid(&["a.toml"], &[1, 3]).environments(), ["a.toml", "a.toml#3"]);
+    assert_eq!(grid(&["a.toml#2"], &[1, 3]).environments(), ["a.toml#2"]);
+}
