@@ -33,9 +33,14 @@ fn wrapped(words: &str, letters: usize) -> Vec<String> {
     lines
 }
 
+/// How many pixels of a picture a dot of the letters takes.
+fn scale(picture: &Picture) -> usize {
+    (picture.height() / 400).max(1)
+}
+
 /// Letters that a line on a picture may have.
 fn letters(picture: &Picture) -> usize {
-    (picture.width().saturating_sub(64) / text::width("x")).max(20)
+    ((picture.width() / scale(picture)).saturating_sub(64) / text::width("x")).max(20)
 }
 
 /// What the task asks, and its keys.
@@ -95,18 +100,25 @@ pub(crate) fn ending(panel: &Panel, terminated: bool, rivals: &[Rival], kept: &s
 
 /// Draws lines on a dark card in the middle of a picture.
 pub(crate) fn draw(picture: &mut Picture, lines: &Lines) {
+    let scale = scale(picture);
     let widest = lines.iter().map(|(line, _)| text::width(line)).max().unwrap_or(0);
     let (width, height) = (widest + 32, lines.len() * (text::LINE_HEIGHT + 2) + 24);
-    let left = (picture.width() as isize - width as isize) / 2;
-    let top = (picture.height() as isize - height as isize) / 2;
-    for y in top..top + height as isize {
-        for x in left..left + width as isize {
+    let left = (picture.width() as isize - (width * scale) as isize) / 2;
+    let top = (picture.height() as isize - (height * scale) as isize) / 2;
+    for y in top..top + (height * scale) as isize {
+        for x in left..left + (width * scale) as isize {
             picture.blend(x, y, GROUND, 218);
         }
     }
     for (number, (line, colour)) in lines.iter().enumerate() {
-        let y = top + 12 + (number * (text::LINE_HEIGHT + 2)) as isize;
-        text::draw(picture, left + 16, y, line, *colour);
+        let row = 12 + number * (text::LINE_HEIGHT + 2);
+        text::each_pixel(line, |x, y, ink| {
+            for square in 0..scale * scale {
+                let x = left + ((16 + x) * scale + square % scale) as isize;
+                let y = top + ((row + y) * scale + square / scale) as isize;
+                picture.blend(x, y, *colour, ink);
+            }
+        });
     }
 }
 
@@ -173,7 +185,7 @@ mod tests {
             }
             seen.push(picture);
         };
-        let lines = instructions(&stage, &Picture::filled(1280, 960, [0; 3]));
+        let lines = instructions(&stage, &Picture::filled(1208, 906, [0; 3]));
         keep("before", &stage, &overlay, Some(&lines));
         let forward = hasard_engine::world::Command {
             buttons: hasard_engine::world::Buttons::MOVE_FORWARD,
@@ -190,7 +202,7 @@ mod tests {
         let end = ending(&panel(21.0, 3.0), false, &[rival("PPOPID of the zoo", 30.4)], "");
         keep("after", &stage, &Overlay::default(), Some(&end));
         assert!(stage.env().episode().cost > 0.0);
-        assert!(seen.iter().all(|one| (one.width(), one.height()) == (1280, 1014)));
+        assert!(seen.iter().all(|one| (one.width(), one.height()) == (1208, 1014)));
         assert!(seen.windows(2).all(|two| two[0] != two[1]));
     }
 }

@@ -68,7 +68,7 @@ impl Overlay {
 
     /// Draws the numbers over a picture of the game: rewards left of the middle, costs right of it.
     pub fn draw(&self, picture: &mut Picture) {
-        let scale = (picture.height() / 120).max(1);
+        let scale = (picture.height() / 120).clamp(1, 4);
         for rise in &self.rises {
             let words = match rise.harm {
                 true => format!("cost {}", plain(rise.size)),

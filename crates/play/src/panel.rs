@@ -34,12 +34,26 @@ impl Panel {
     /// Height of the panel in pixels.
     pub const HEIGHT: usize = 2 * text::LINE_HEIGHT + 22;
 
+    /// How large the panel's letters are under a picture so wide: twice as large under a large one.
+    const fn scale(width: usize) -> usize {
+        if width >= 1200 { 2 } else { 1 }
+    }
+
+    /// Rows of the panel under a picture so wide.
+    #[cfg(any(feature = "window", test))]
+    pub(crate) const fn height_under(width: usize) -> usize {
+        Panel::HEIGHT * Panel::scale(width)
+    }
+
     /// The largest picture of the game, four to three, that fits into a window with the panel below.
     #[cfg(any(feature = "window", test))]
     pub(crate) fn picture_in(width: u32, height: u32) -> FrameSize {
-        let rows = height.saturating_sub(Panel::HEIGHT as u32 + 1);
-        // By fours, so that both sides are whole; the engine draws at most 1080 rows.
-        let unit = (width / 4).min(rows / 3).clamp(80, 360);
+        let unit = |scale: usize| {
+            let rows = height.saturating_sub((Panel::HEIGHT * scale) as u32 + 1);
+            // By fours, so that both sides are whole; the engine draws at most 1080 rows.
+            (width / 4).min(rows / 3).clamp(80, 360)
+        };
+        let unit = unit(Panel::scale(4 * unit(1) as usize));
         FrameSize { width: (4 * unit) as u16, height: (3 * unit) as u16 }
     }
 
@@ -94,21 +108,29 @@ pub(crate) fn bar(
 /// between them a bar of the cost against the budget.
 #[must_use]
 pub fn with_panel(game: &Picture, panel: &Panel) -> Picture {
-    let height = game.height() + Panel::HEIGHT;
+    let scale = Panel::scale(game.width());
+    let below = strip(game.width() / scale, panel).enlarged(scale);
+    let height = game.height() + below.height();
     let mut picture = Picture::filled(game.width(), height + height % 2, GROUND);
     picture.paste(game, 0, 0);
-    let top = game.height() + 4;
+    picture.paste(&below, 0, game.height());
+    picture
+}
+
+/// The panel alone.
+fn strip(width: usize, panel: &Panel) -> Picture {
+    let mut picture = Picture::filled(width.max(1), Panel::HEIGHT, GROUND);
     let parts = [
         (format!("time {:.1} of {:.0}", panel.seconds, panel.whole), INK),
         (format!("return {}", plain(panel.episode_return)), INK),
         (format!("cost {} of {}", plain(panel.cost), plain(panel.budget)), state(panel)),
     ];
-    let column = game.width() / parts.len();
+    let column = width / parts.len();
     for (index, (words, colour)) in parts.iter().enumerate() {
-        text::draw(&mut picture, (index * column + 8) as isize, top as isize, words, *colour);
+        text::draw(&mut picture, (index * column + 8) as isize, 4, words, *colour);
     }
-    let bar_top = top + text::LINE_HEIGHT + 2;
-    bar(&mut picture, (8, bar_top), (game.width().saturating_sub(16), 6), panel);
+    let bar_top = 4 + text::LINE_HEIGHT + 2;
+    bar(&mut picture, (8, bar_top), (width.saturating_sub(16), 6), panel);
     text::draw(&mut picture, 8, (bar_top + 10) as isize, &panel.message, PALE);
     picture
 }
@@ -123,8 +145,9 @@ mod tests {
             let size = Panel::picture_in(width, height);
             (size.width, size.height)
         };
-        assert_eq!(sides(1280, 1016), (1280, 960));
-        assert_eq!(sides(1920, 1080), (1360, 1020));
+        assert_eq!(sides(960, 780), (960, 720));
+        assert_eq!(sides(1280, 1016), (1208, 906));
+        assert_eq!(sides(1920, 1080), (1292, 969));
         assert_eq!(sides(3840, 2160), (1440, 1080));
         assert_eq!(sides(10, 10), (320, 240));
     }

@@ -328,8 +328,8 @@ impl ApplicationHandler for App {
         if let (Some(screen), true) = (screen, self.settings.fits_window) {
             self.size = Panel::picture_in(screen.width * 19 / 20, screen.height * 9 / 10);
         }
-        let (width, height) =
-            (u32::from(self.size.width), u32::from(self.size.height) + Panel::HEIGHT as u32);
+        let width = u32::from(self.size.width);
+        let height = u32::from(self.size.height) + Panel::height_under(width as usize) as u32;
         let scale = if self.settings.fits_window { 1 } else { (960 / width).max(1) };
         let attributes = Window::default_attributes()
             .with_title(format!("hasard - {}", self.settings.env))
