@@ -6,8 +6,7 @@
 /// # Errors
 /// What to write instead.
 pub fn whole(text: &str) -> Result<u64, String> {
-    let remedy =
-        || "write a whole number such as 2000000, 2_000_000, 2M, 400k or 1e6".to_string();
+    let remedy = || "write a whole number such as 2000000, 2_000_000, 2M, 400k or 1e6".to_string();
     let plain: String = text.trim().chars().filter(|letter| !matches!(letter, '_' | ',')).collect();
     let (digits, exponent) = match plain.char_indices().last() {
         Some((at, 'k' | 'K')) => (&plain[..at], 3),
