@@ -65,8 +65,6 @@ fn shortened(command: &str, number: usize) -> String {
         "eval" if has("--worst") => "--episodes 1 -o worst.gif".into(),
         "eval" | "rollout" | "claim" => "--episodes 2".into(),
         "record" => "--steps 3".into(),
-        "highlights" => "--episodes 1 --size 64x48".into(),
-        "site" => concat!("--root ", env!("CARGO_MANIFEST_DIR"), "/../..").into(),
         "bench" => "--threads 2 --seconds 0.1".into(),
         "highlights" => "--episodes 1 --seconds 1 --size 64x48".into(),
         "site" => format!("--root {}", std::fs::canonicalize("../..").unwrap().display()),
