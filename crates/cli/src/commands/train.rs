@@ -1,5 +1,6 @@
 //! `hasard train`: an agent from pixels.
 
+use super::sweep::plan;
 use crate::args::{Rules, TrainArgs};
 use crate::automap;
 use crate::episode_lines::worth;
@@ -77,6 +78,12 @@ pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, F
 }
 
 impl Begun<'_> {
+    /// Whether it is worth a second to say how long it will take: a fresh run of minutes.
+    fn is_long(&self) -> bool {
+        let fresh = !matches!(self.start, Start::Resume { .. });
+        fresh && self.config.frames >= 1_000_000 && self.config.device == "cpu"
+    }
+
     /// Trains, and keeps the pictures of the map beside what is learned. Gives the run's directory
     /// and how it ended.
     pub fn train(self, team: &Team, hooks: &mut Hooks<'_>) -> Result<(PathBuf, Summary), Failure> {
@@ -141,6 +148,12 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     let (directory, summary) = begun.train_told(&Team::default(), &mut hooks, |begun| {
         if progress.is_shown() {
             describe(&begun.config, &begun.directory);
+            // What keeps it from being measured keeps the run from beginning, which says so.
+            if begun.is_long()
+                && let Ok(line) = plan::outlook(&begun.config, &begun.options)
+            {
+                note!("{line}");
+            }
         }
     })?;
     if let Some(selection) = &summary.selection {

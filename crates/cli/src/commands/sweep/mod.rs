@@ -1,6 +1,6 @@
 //! `hasard sweep`: many trainings.
 
-mod plan;
+pub(super) mod plan;
 mod progress;
 mod rescale;
 

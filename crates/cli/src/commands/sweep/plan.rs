@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::settings::Elsewhere;
 use hasard_engine::simd::Simd;
-use hasard_envs::VecEnv;
+use hasard_envs::{EnvOptions, VecEnv};
 use hasard_learn::config::{EnvConfig, TrainConfig};
 use hasard_learn::runs::measure::measure;
 use hasard_sweep::{Job, State};
@@ -88,13 +88,9 @@ impl Plan {
             let mut config = (*config).clone();
             (config.learning.threads, config.sampling.samplers) = (threads, threads);
             let options = crate::settings::trained_options(&config.env, Elsewhere::default())?;
-            let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
-            let kernels = Simd::chosen().map_err(Failure::bad)?;
-            let seconds = SECONDS / measured as f64;
-            let loops =
-                measure(kernels, &config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
-            rates.insert(name.clone(), loops.steps_per_second * f64::from(config.env.frame_skip));
-            sizes.insert(name.clone(), loops.checkpoint_bytes * (config.reporting.keep as u64 + 1));
+            let (rate, bytes) = tried(&config, &options, SECONDS / measured as f64)?;
+            rates.insert(name.clone(), rate);
+            sizes.insert(name.clone(), bytes);
         }
         let mean = rates.values().sum::<f64>() / rates.len() as f64;
         let size = sizes.values().sum::<u64>() / sizes.len() as u64;
@@ -141,8 +137,34 @@ impl Plan {
     }
 }
 
-/// Frames that a run's evaluations play beside what it learns from.
+/// Frames a second of a run's loop, measured for some seconds, and the bytes of its checkpoints.
+fn tried(config: &TrainConfig, options: &EnvOptions, seconds: f64) -> Result<(f64, u64), Failure> {
+    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, options, worlds);
+    let kernels = Simd::chosen().map_err(Failure::bad)?;
+    let loops = measure(kernels, config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
+    let rate = loops.steps_per_second * f64::from(config.env.frame_skip);
+    Ok((rate, loops.checkpoint_bytes * (config.reporting.keep as u64 + 1)))
+}
+
+/// How long a run takes here, evaluations included, and what it keeps on disk, in a line: measured
+/// for a second.
+pub fn outlook(config: &TrainConfig, options: &EnvOptions) -> Result<String, Failure> {
+    let (rate, bytes) = tried(config, options, 1.0)?;
+    let hours = (config.frames + evaluated(config)) as f64 / rate / 3600.0;
+    Ok(format!(
+        "about {} here, at {rate:.0} frames/s and with evaluations; {} on disk",
+        span(hours),
+        size(bytes)
+    ))
+}
+
+/// Frames that a job's evaluations play beside what it learns from.
 fn tested(job: &Job, config: &TrainConfig) -> u64 {
+    evaluated(config) + u64::from(job.evaluate) * EPISODE_TICS
+}
+
+/// Frames that a run's own evaluations play.
+fn evaluated(config: &TrainConfig) -> u64 {
     let evaluation = &config.evaluation;
     let during = match evaluation.every {
         Some(0) => 0,
@@ -152,7 +174,7 @@ fn tested(job: &Job, config: &TrainConfig) -> u64 {
     };
     // Candidates are confirmed a few times, and the selected checkpoint closes the run.
     let further = if during > 0 { 4 * config.confirming_episodes() as u64 } else { 0 };
-    (during * evaluation.episodes as u64 + further + u64::from(job.evaluate)) * EPISODE_TICS
+    (during * evaluation.episodes as u64 + further) * EPISODE_TICS
 }
 
 /// `270 G`, `8.0 M`, `300`.
@@ -194,6 +216,7 @@ fn size(bytes: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hasard_learn::config::{AlgorithmKind, Preset};
 
     #[test]
     fn numbers_are_said_in_the_unit_that_fits() {
@@ -207,6 +230,19 @@ mod tests {
         );
         assert_eq!([0.00374, 0.015, 1.26].map(two_digits), [0.0037, 0.015, 1.3]);
         assert_eq!([60_300_000_000, 114_000_000, 3].map(size), ["60.3 GB", "114 MB", "1 MB"]);
+    }
+
+    #[test]
+    fn a_training_says_how_long_it_takes_and_what_it_keeps() {
+        let env = EnvConfig { size: (64, 48), ..EnvConfig::new("RemedyRushLevel1-v0") };
+        let (algorithm, preset) = (AlgorithmKind::PpoPid, Preset::Quick);
+        let mut config = TrainConfig::new(algorithm, preset, env).unwrap();
+        (config.sampling.lanes, config.sampling.rollout) = (4, 8);
+        (config.network.dense, config.network.recurrent) = (vec![32], Some(32));
+        config.learning.recurrence = None;
+        let options = config.env.options().unwrap();
+        let line = outlook(&config, &options).unwrap();
+        assert!(line.starts_with("about ") && line.ends_with(" MB on disk"), "{line}");
     }
 
     #[test]
