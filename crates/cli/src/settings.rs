@@ -85,6 +85,7 @@ impl From<View> for ViewKind {
             View::Segmented => ViewKind::Segmented,
             View::Labels => ViewKind::Labels,
             View::Grey => ViewKind::Grey,
+            View::Phase => ViewKind::Phase,
             View::Automap => ViewKind::Automap,
         }
     }

@@ -246,6 +246,7 @@ fn views_and_panel_have_their_sizes() {
         ViewKind::Segmented,
         ViewKind::Labels,
         ViewKind::Grey,
+        ViewKind::Phase,
         ViewKind::Automap,
     ];
     let mut views = Views::new(&stage, size, &every).unwrap();
@@ -333,4 +334,28 @@ fn a_replay_skips_to_a_step() {
     replay.skip_to(u32::MAX);
     assert_eq!(replay.stage().env().episode().length, 30);
     assert_eq!(replay.difference(), None);
+}
+
+/// Each part of the picture has the colour of what drew it: status bar below, a thing where a label
+/// is, floor beneath and sky above where they are seen.
+#[test]
+fn phases_are_coloured_by_what_drew_them() {
+    let mut stage = Stage::new("RemedyRushLevel1-v0", &EnvOptions::default()).unwrap();
+    stage.reset(3);
+    let size = FrameSize { width: 320, height: 240 };
+    let mut views = Views::new(&stage, size, &[ViewKind::Phase]).unwrap();
+    let picture = views.draw(&stage);
+    let classes = views.renderer().classes();
+    let mut seen = std::collections::BTreeMap::new();
+    for y in 0..240 {
+        for x in 0..320 {
+            *seen.entry(picture.get(x, y)).or_insert(0u32) += 1;
+            let thing = classes[y * 320 + x] >= hasard_engine::render::class::FIRST_ACTOR;
+            assert_eq!(thing, picture.get(x, y) == [208, 64, 160], "{x} {y}");
+        }
+    }
+    assert_eq!(picture.get(160, 239), [112, 112, 112]);
+    for part in [[208, 64, 160], [72, 128, 72], [176, 92, 48], [136, 200, 240]] {
+        assert!(seen.get(&part).is_some_and(|count| *count > 50), "{part:?} of {seen:?}");
+    }
 }

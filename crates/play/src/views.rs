@@ -2,7 +2,7 @@
 
 use crate::{PlayError, Stage};
 use hasard_engine::render::{
-    Buffers, FrameScratch, FrameSize, Renderer, SegmentationColours, TopDown,
+    Buffers, FrameScratch, FrameSize, Renderer, SegmentationColours, TopDown, class,
 };
 use hasard_engine::world::World;
 use hasard_envs::Env;
@@ -22,6 +22,8 @@ pub enum ViewKind {
     Labels,
     /// Luminance.
     Grey,
+    /// One colour for each part of the renderer that drew a pixel.
+    Phase,
     /// The whole map with all things, from above, north up.
     Automap,
 }
@@ -36,8 +38,23 @@ impl ViewKind {
             ViewKind::Segmented => "segmented",
             ViewKind::Labels => "labels",
             ViewKind::Grey => "grey",
+            ViewKind::Phase => "phase",
             ViewKind::Automap => "automap",
         }
+    }
+}
+
+/// The colour of the folder of `hasard_engine::render` that draws what a class stands for: the key
+/// is in docs/rendering.md.
+const fn phase_colour(seen: u16) -> [u8; 3] {
+    match seen {
+        class::WALL => [176, 92, 48],
+        class::FLOOR | class::OTHER_FLOOR => [72, 128, 72],
+        class::CEILING | class::OTHER_CEILING => [96, 112, 176],
+        class::SKY => [136, 200, 240],
+        class::STATUS_BAR => [112, 112, 112],
+        class::WEAPON => [232, 200, 72],
+        _ => [208, 64, 160],
     }
 }
 
@@ -128,7 +145,7 @@ impl Views {
         let wants = |wanted: &[ViewKind]| self.kinds.iter().any(|kind| wanted.contains(kind));
         let buffers = Buffers {
             depth: wants(&[ViewKind::Depth]),
-            labels: wants(&[ViewKind::Segmented, ViewKind::Labels]),
+            labels: wants(&[ViewKind::Segmented, ViewKind::Labels, ViewKind::Phase]),
         };
         self.renderer.render(&mut self.scratch, world, 0, buffers);
     }
@@ -178,6 +195,10 @@ impl Views {
             }
             (ViewKind::Depth, _) => drawn(width, height, 1, &|out| renderer.write_depth(out)),
             (ViewKind::Labels, _) => drawn(width, height, 1, &|out| renderer.write_labels(out)),
+            (ViewKind::Phase, _) => drawn(width, height, 3, &|out| {
+                let pixels = out.chunks_exact_mut(3).zip(renderer.classes());
+                pixels.for_each(|(pixel, seen)| pixel.copy_from_slice(&phase_colour(*seen)));
+            }),
             (ViewKind::Grey, _) => drawn(width, height, 1, &|out| renderer.write_grey(out)),
         }
     }

@@ -105,7 +105,7 @@ impl Inner {
             ViewKind::Depth | ViewKind::Labels | ViewKind::Grey => {
                 (width, height, 1, rgb.chunks_exact(3).map(|pixel| pixel[0]).collect())
             }
-            ViewKind::Colour | ViewKind::Segmented | ViewKind::Automap => {
+            ViewKind::Colour | ViewKind::Segmented | ViewKind::Phase | ViewKind::Automap => {
                 (width, height, 3, rgb.to_vec())
             }
         })

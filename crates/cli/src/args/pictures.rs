@@ -24,6 +24,9 @@ pub enum View {
     /// Luminance
     #[value(alias = "gray")]
     Grey,
+    /// One colour for each part of the renderer: walls, floors, ceilings, sky, things, weapon,
+    /// status bar (docs/rendering.md has the key)
+    Phase,
     /// The whole map with all things, from above, north up
     Automap,
 }
