@@ -88,7 +88,8 @@ def make_vec(env_id: str | Sequence[str], num_envs: int = 1, **kwargs: Any) -> V
         if not tasks:
             raise InvalidOption("a batch needs a task; the list of ids is empty")
         return VectorEnv(tasks=tasks, num_envs=num_envs, **kwargs)
-    made = _gymnasium.make_vec(f"hasard/{_known(cast("str", env_id))}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
+    known = _known(cast("str", env_id))
+    made = _gymnasium.make_vec(f"hasard/{known}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
     return cast("VectorEnv", made)
 
 
