@@ -1,7 +1,6 @@
 //! The zoo: trained agents by name. Six are part of the program; more may lie in a folder.
 
 use crate::failure::Failure;
-use hasard_learn::runs::agent_file::AgentFile;
 use hasard_learn::runs::zoo::{PREFIX, names};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -78,60 +77,8 @@ pub fn agents() -> Vec<(String, PathBuf)> {
     all
 }
 
-/// What an agent of the program was worth when it was selected: means over many episodes.
-#[derive(Clone, Debug)]
-#[cfg_attr(not(feature = "serve"), allow(dead_code, reason = "the page shows all of it"))]
-pub struct Worth {
-    /// Its name: `zoo:NAME` plays it.
-    pub name: String,
-    /// What it was trained by and in.
-    pub algorithm: String,
-    pub env: String,
-    pub episode_return: f64,
-    pub cost: f64,
-    pub budget: f64,
-}
-
-#[cfg_attr(
-    not(any(feature = "serve", feature = "window")),
-    allow(dead_code, reason = "who plays is held against them")
-)]
-/// What the agents of the program are worth, as their files say.
-pub fn results() -> Vec<Worth> {
-    let worth = |name: &str| {
-        let bytes = hasard_learn::runs::zoo::bytes(Path::new(&format!("{PREFIX}{name}")))?;
-        let card = AgentFile::parse(bytes).ok()?.card;
-        let found = card.selection?;
-        let evaluation = found.evaluation();
-        Some(Worth {
-            name: name.to_string(),
-            algorithm: card.config.algorithm.name().to_string(),
-            env: card.config.env.id.clone(),
-            episode_return: evaluation.episode_return.mean,
-            cost: evaluation.cost.mean,
-            budget: card.config.constraints.first()?.budget,
-        })
-    };
-    names().filter_map(worth).collect()
-}
-
 fn add(all: &mut Vec<(String, PathBuf)>, name: String, place: PathBuf) {
     if all.iter().all(|(known, _)| *known != name) {
         all.push((name, place));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_agent_of_the_program_says_what_it_is_worth() {
-        let all = results();
-        assert_eq!(all.len(), names().count());
-        for one in all {
-            assert_eq!(one.env, format!("{}-v0", one.name));
-            assert!(one.episode_return > 0.0 && one.cost <= one.budget, "{one:?}");
-        }
     }
 }

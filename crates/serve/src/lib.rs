@@ -30,4 +30,4 @@ mod runs;
 mod server;
 mod show;
 
-pub use server::{Agents, Server, Settings, ZooResult};
+pub use server::{Agents, Server, Settings};

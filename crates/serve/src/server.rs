@@ -11,6 +11,7 @@ use axum::response::Response;
 use axum::routing::{get, post};
 use hasard_envs::{Env, EnvId, EnvOptions, RuleSet};
 use hasard_learn::runs::evaluate::{Agent, Choice};
+use hasard_learn::runs::zoo_results::ZooResult;
 use serde_json::{Value, json};
 use std::io;
 use std::net::SocketAddr;
@@ -49,23 +50,6 @@ pub trait Agents: Send + Sync {
     fn zoo_results(&self) -> Vec<ZooResult> {
         Vec::new()
     }
-}
-
-/// What an agent that comes with the program is worth: means over many episodes.
-#[derive(Clone, Debug)]
-pub struct ZooResult {
-    /// Its name.
-    pub name: String,
-    /// What it was trained by.
-    pub algorithm: String,
-    /// Where.
-    pub env: String,
-    /// Sum of rewards of an episode.
-    pub episode_return: f64,
-    /// Sum of costs of an episode.
-    pub cost: f64,
-    /// Cost that an episode may have.
-    pub budget: f64,
 }
 
 /// What is served, and to whom.

@@ -35,9 +35,10 @@ pub fn run(args: &PlayArgs) -> Outcome {
 /// Results within the budget: of kept episodes, and of the zoo's agent; the best first.
 #[cfg(feature = "window")]
 fn rivals(env: &str, hard: bool, folder: &std::path::Path) -> Vec<hasard_play::Rival> {
+    use hasard_learn::runs::zoo_results::results;
     use hasard_play::Rival;
     let people = hasard_play::kept_results(folder, env, hard);
-    let zoo = crate::zoo::results().into_iter().filter(|one| one.env == env && !hard);
+    let zoo = results().iter().filter(|one| one.env == env && !hard);
     let zoo = zoo.filter(|one| one.cost <= one.budget).map(|one| Rival {
         who: format!("{} of the zoo, mean of many episodes", one.algorithm),
         episode_return: one.episode_return,

@@ -94,6 +94,7 @@ mod trained {
     use hasard_envs::{Env, EnvOptions};
     use hasard_learn::networks::distribution::ActionShape;
     use hasard_learn::runs::evaluate::{Agent, Choice, Which, run_config};
+    use hasard_learn::runs::zoo_results::{ZooResult, results};
     use std::path::{Path, PathBuf};
 
     /// And where maps and pictures of theirs are that are no longer where they were.
@@ -127,18 +128,8 @@ mod trained {
             crate::zoo::find(format!("zoo:{name}").as_ref()).map_err(Failure::line)
         }
 
-        fn zoo_results(&self) -> Vec<hasard_serve::ZooResult> {
-            static RESULTS: std::sync::OnceLock<Vec<hasard_serve::ZooResult>> =
-                std::sync::OnceLock::new();
-            let result = |one: crate::zoo::Worth| hasard_serve::ZooResult {
-                name: one.name,
-                algorithm: one.algorithm,
-                env: one.env,
-                episode_return: one.episode_return,
-                cost: one.cost,
-                budget: one.budget,
-            };
-            RESULTS.get_or_init(|| crate::zoo::results().into_iter().map(result).collect()).clone()
+        fn zoo_results(&self) -> Vec<ZooResult> {
+            results().to_vec()
         }
     }
 }

@@ -24,3 +24,4 @@ pub mod trainer;
 pub mod watch;
 pub mod writer;
 pub mod zoo;
+pub mod zoo_results;
