@@ -10,6 +10,7 @@ use super::rules::OwnRules;
 use super::tree::{Node, Value};
 use super::{check as checks, layers, place, read, tiles, tree};
 use crate::scenarios::{AnyRules, ScenarioFile, ScenarioSpec, Setting, Task};
+use crate::single::blueprint::has_start;
 use crate::spaces::action::Controls;
 use crate::{CostTerm, EnvError, RuleSet, Scenario};
 use hasard_engine::map::{Map, MapSource};
@@ -149,10 +150,7 @@ fn try_map(plan: &Plan, mistakes: &mut Mistakes) {
     });
     let ready = built.and_then(|map| {
         Program::new(plan.clone(), &map, &[])?;
-        let world = World::new(Arc::new(map), 0);
-        (!world.players.is_empty()).then_some(()).ok_or_else(|| EnvError::Map {
-            why: "the map has no player start; add a thing of type 1".to_string(),
-        })
+        has_start(&World::new(Arc::new(map), 0))
     });
     if let Err(error) = ready {
         mistakes.add(0, error.to_string());

@@ -34,6 +34,15 @@ pub(crate) struct Blueprint {
     pub view: Arc<View>,
 }
 
+/// Whether a world has somebody to play: else the line that names the map and the remedy.
+pub(crate) fn has_start(world: &World) -> Result<(), EnvError> {
+    if world.players.is_empty() {
+        let why = format!("map {}: no player start; add a thing of type 1", world.map.name);
+        return Err(EnvError::Map { why });
+    }
+    Ok(())
+}
+
 impl Blueprint {
     pub fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
         let id = EnvId::within(options.scenario, id)?;
@@ -63,10 +72,7 @@ impl Blueprint {
         // Only this scenario's published settings draw them. Worlds of our own leave them out: they
         // cost a third of a step.
         world.rockets_shed = id.scenario.rockets_shed && as_published;
-        if world.players.is_empty() {
-            let why = format!("map {}: no player start; add a thing of type 1", world.map.name);
-            return Err(EnvError::Map { why });
-        }
+        has_start(&world)?;
         rules.prepare(&mut world);
         let (start_tic, end_tic) = facts::clock(id, options.rules, options.hard);
         let (whose_rules, whose_constraint) = options.actions_of();

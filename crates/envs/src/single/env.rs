@@ -1,6 +1,4 @@
 //! The single environment.
-//!
-//! Long because the trait of the batch repeats what the type offers by itself.
 
 use crate::error::EnvError;
 use crate::interface::batch::{Episode, episode_costs};
@@ -166,16 +164,13 @@ impl Env {
         (game.outcome.reward, game.outcome.costs) = (0.0, [0.0; MOST_TERMS]);
         self.happenings.clear();
         for _ in 0..self.blueprint.options.frame_skip {
-            if self.blueprint.options.events {
-                let happenings = &mut self.happenings;
-                game.tic_noted(command, |world| {
-                    happenings.extend(
-                        world.events.iter().filter_map(|event| Happening::of(*event, world)),
-                    );
-                });
-            } else {
-                game.tic(command);
-            }
+            game.tic_noted(command, |world| {
+                if self.blueprint.options.events {
+                    let noted =
+                        world.events.iter().filter_map(|event| Happening::of(*event, world));
+                    self.happenings.extend(noted);
+                }
+            });
             if game.over() || game.world.tic >= self.blueprint.end_tic {
                 break;
             }

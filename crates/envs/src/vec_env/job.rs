@@ -71,6 +71,9 @@ impl Chosen {
 /// different tasks: one task after the other, so that its map and pictures stay in the caches (a
 /// batch of three tasks ran at 0.90 of its parts' speed in the order of lanes).
 pub(super) const fn visited(index: usize, count: usize, tasks: usize) -> usize {
+    if tasks == 1 {
+        return index;
+    }
     let (each, more) = (count / tasks, count % tasks);
     // The first `more` tasks have a lane more than the others.
     let (task, round) = if index < more * (each + 1) {

@@ -28,7 +28,7 @@ pub struct MixedTask {
 /// What the tasks of a batch have together, and how each sees it.
 #[derive(Clone, Debug)]
 pub struct Mixture {
-    firsts: Vec<Arc<Part>>,
+    parts: Vec<Arc<Part>>,
 }
 
 /// A task's way into the batch.
@@ -82,26 +82,31 @@ impl Mixture {
                 own_statistics: env.stat_names().into_iter().filter_map(place).collect(),
             })
         };
-        Ok(Mixture { firsts: envs.iter().map(part).collect() })
+        Ok(Mixture { parts: envs.iter().map(part).collect() })
     }
 
     /// The tasks, in the order given.
     #[must_use]
     pub fn tasks(&self) -> Vec<MixedTask> {
-        self.firsts.iter().map(|part| part.task.clone()).collect()
+        self.parts.iter().map(|part| part.task.clone()).collect()
+    }
+
+    /// Number of tasks.
+    pub(super) const fn count(&self) -> usize {
+        self.parts.len()
     }
 
     /// Which task a lane of this number has: they take turns, so that neither the batch's width
     /// nor the number of processes changes what a lane plays.
     #[must_use]
     pub fn task_of(&self, number: u64) -> usize {
-        (number % self.firsts.len() as u64) as usize
+        (number % self.parts.len() as u64) as usize
     }
 
     /// An environment of a task, as a lane of the mixture.
     #[must_use]
     pub fn lane(&self, task: usize, env: Box<dyn Environment>) -> Box<dyn Environment> {
-        let part = Arc::clone(&self.firsts[task]);
+        let part = Arc::clone(&self.parts[task]);
         let (own_actions, own_deltas) = (vec![0; part.choices.len()], vec![0.0; part.deltas.len()]);
         let costs = vec![0.0; part.terms.len()];
         Box::new(MixedLane { part, env, own_actions, own_deltas, costs })

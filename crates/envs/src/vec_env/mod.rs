@@ -101,7 +101,7 @@ impl VecEnv {
         options: VecOptions,
         mut make: impl FnMut(usize, usize) -> Result<Box<dyn Environment>, EnvError>,
     ) -> Result<VecEnv, EnvError> {
-        let mut worlds = VecEnv::of_tasks(options, mixture.tasks().len(), |lane| {
+        let mut worlds = VecEnv::of_tasks(options, mixture.count(), |lane| {
             let task = mixture.task_of(options.first_lane.wrapping_add(lane as u64));
             Ok(mixture.lane(task, make(task, lane)?))
         })?;
