@@ -183,7 +183,8 @@ fn every_key_of_a_row_is_explained() {
     let frames = |name| if ["P3O", "CUP"].contains(&name) { 9000 } else { 512 };
     let mut lines: Vec<String> =
         names.map(|name| format!("--algo {name} --frames {}", frames(name))).collect();
-    lines.push("--safety-budget 5 --safety-budget harmful_items=5 --frames 512".into());
+    let two = "--safety-budget 5 --safety-budget harmful_items=5";
+    lines.push(format!("{two} --set learning.budget_annealing=0.6 --frames 512"));
     lines.push("--curriculum 1,2 --frames 512".into());
     let mut keys = BTreeSet::new();
     for (number, line) in lines.iter().enumerate() {

@@ -73,6 +73,9 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
         if algorithm == AlgorithmKind::Cup {
             config.constraints.push(Constraint { term: Some("second".into()), budget: 1.0 });
         }
+        if matches!(algorithm, AlgorithmKind::PpoPid | AlgorithmKind::Cup) {
+            config.learning.budget_annealing = Some(0.6);
+        }
         if algorithm == AlgorithmKind::TrpoPid {
             // The TRPO family as released.
             let released = TrainConfig::plain(algorithm, Preset::Released, config.env.clone());
@@ -124,6 +127,12 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
             .unwrap();
         let sum = early["cost_mean"].as_f64().unwrap_or(0.0) * early["episodes"].as_f64().unwrap();
         assert!((early["cost_total"].as_f64().unwrap() - sum).abs() < 1e-6, "{early}");
+        // Of what the first episodes cost, down to the budget.
+        if config.learning.budget_annealing.is_some() {
+            let aims: Vec<f64> =
+                rows(&straight).iter().map(|row| row["aimed_budget"].as_f64().unwrap()).collect();
+            assert!(aims[0] >= aims[3] && aims[3] > 4.0 && aims[7] == 4.0, "{algorithm}: {aims:?}");
+        }
         let last = rows(&straight).pop().unwrap();
         assert!(
             last["violation_total"].as_f64().unwrap() > 0.0
@@ -501,6 +510,7 @@ fn a_curriculum_stopped_at_every_moment_equals_the_uninterrupted_one() {
     let mut config = tiny::config(AlgorithmKind::PpoPid);
     config.env.id = "RemedyRushLevel1-v0".into();
     config.sampling.rollout = 13;
+    config.learning.budget_annealing = Some(0.8);
     let rollout = config.frames_per_rollout();
     // The first lesson ends inside its third rollout.
     config.set_curriculum(vec![
@@ -528,6 +538,11 @@ fn a_curriculum_stopped_at_every_moment_equals_the_uninterrupted_one() {
     assert!(!go(Start::Fresh(config.clone()), &straight, usize::MAX));
     let levels: Vec<Value> = rows(&straight).iter().map(|row| row["level"].clone()).collect();
     assert_eq!(levels, [1, 1, 1, 2, 2, 2]);
+    // An annealed budget comes down through the lessons, from what the run's first episodes cost.
+    let aims: Vec<f64> =
+        rows(&straight).iter().map(|row| row["aimed_budget"].as_f64().unwrap()).collect();
+    assert!(aims[1..].windows(2).all(|two| two[0] >= two[1]), "{aims:?}");
+    assert!(aims[2] > aims[3] && aims[3] > 4.0 && aims[5] == 4.0, "{aims:?}");
     let broken = tiny::directory("lessons-broken");
     let mut stopped = go(Start::Fresh(config.clone()), &broken, 1);
     let mut times = 1;

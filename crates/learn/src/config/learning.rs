@@ -79,11 +79,21 @@ pub struct LearningConfig {
     pub rate: f64,
     /// Learning rate at the end of the schedule, reached linearly; `null` for a constant one.
     pub final_rate: Option<f64>,
-    /// Frames after which the schedules of rates and exploration, and of the PID's reference
-    /// budget, are over; `null` for the length that the run is begun with, which a run then writes
+    /// Frames after which the schedules of rates, exploration and budgets, and of the PID's
+    /// reference budget, are over; `null` for the length that the run is begun with, which a run then writes
     /// down here: it keeps its schedule when it is extended.
     #[serde(default)]
     pub schedule_frames: Option<u64>,
+    /// Share of the schedule at which the budgets that learning aims at have come down, in a
+    /// straight line, from what the first episodes cost, one a world; `null` for budgets that are
+    /// the same from the start. A constraint that costs less at first than is aimed at has nothing
+    /// to come down from. Evaluations and the choice of a checkpoint go by the budgets themselves.
+    #[serde(default)]
+    pub budget_annealing: Option<f64>,
+    /// Where annealed budgets start, in multiples of what is aimed at in the end; `null` for what
+    /// the first episodes cost.
+    #[serde(default)]
+    pub budget_annealing_start: Option<f64>,
     /// Adam's decays.
     pub adam_betas: (f64, f64),
     /// Adam's epsilon.

@@ -1,6 +1,7 @@
 //! Everything that a run is made of. A run's `config.json` is this, and resuming or evaluating
 //! needs nothing else.
 
+mod aim;
 mod algorithm;
 mod change;
 pub mod constraint;

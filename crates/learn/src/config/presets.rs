@@ -82,6 +82,8 @@ impl TrainConfig {
                 rate: 1e-4,
                 final_rate: None,
                 schedule_frames: None,
+                budget_annealing: None,
+                budget_annealing_start: None,
                 adam_betas: (0.9, 0.999),
                 adam_epsilon: if released && separate { 1e-8 } else { 1e-6 },
                 // FOCOPS stops there, and CUP's code is built on its.

@@ -295,20 +295,13 @@ impl TrainConfig {
                 "above 0, for what is left of it is measured in its units",
             );
         }
-        Ok(())
+        self.check_annealing()
     }
 
     /// Steps of the trajectories that are learned from.
     #[must_use]
     pub fn trajectory_steps(&self) -> usize {
         self.learning.recurrence.unwrap_or(usize::MAX).min(self.sampling.rollout)
-    }
-
-    /// Cost of an episode that learning aims at, for one of the constraints: the same for every
-    /// algorithm.
-    #[must_use]
-    pub fn aim(&self, constraint: usize) -> f64 {
-        self.constraints[constraint].budget * self.budget_share
     }
 
     /// Share of the schedules that is over after so many frames, 0 to 1.

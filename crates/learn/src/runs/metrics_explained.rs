@@ -140,6 +140,13 @@ pub const METRICS: &[Metric] = &[
     ),
     metric("learning_rate", "", "", "Learning rate of Adam at present."),
     metric(
+        "aimed_budget",
+        "cost",
+        "learning.budget_annealing",
+        "Cost of an episode that learning aims at while budgets come down, of a constraint on the whole cost.",
+    ),
+    metric("aimed_budget/TERM", "cost", NAMED, "The same of the constraint on a named term."),
+    metric(
         "explained_variance",
         "share",
         "",

@@ -10,6 +10,7 @@ pub mod claim;
 pub mod evaluate;
 pub mod evaluation;
 pub mod examiner;
+mod first_episodes;
 pub mod heatmap;
 pub mod measure;
 pub mod metrics_explained;

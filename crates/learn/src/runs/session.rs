@@ -180,6 +180,7 @@ impl Session {
                 (frames, rollouts) = (before.frames, before.rollouts);
                 watch.episodes = before.watch.episodes;
                 watch.totals.clone_from(&before.watch.totals);
+                watch.first.clone_from(&before.watch.first);
             }
             Beginning::Everything(loaded) => {
                 let saved =
@@ -308,6 +309,15 @@ impl Session {
             learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
         self.learner.exploration_coefficient =
             learning.exploration_coefficient + (last - learning.exploration_coefficient) * done;
+        if learning.budget_annealing.is_some() {
+            for (constraint, one) in self.config.constraints.iter().enumerate() {
+                let name = match &one.term {
+                    None => "aimed_budget".into(),
+                    Some(term) => format!("aimed_budget/{term}"),
+                };
+                self.means.add(name, self.watch.aim(&self.config, constraint, done));
+            }
+        }
         if !learning.reuse_forward {
             self.learner.absorb(rollout)?;
         }

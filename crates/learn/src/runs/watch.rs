@@ -9,6 +9,7 @@ use crate::algorithms::Signal;
 use crate::config::constraint::conditional_value_at_risk;
 use crate::config::{Constraint, ConstraintStatistic, MultiplierUpdate, TrainConfig};
 use crate::error::LearnError;
+use crate::runs::first_episodes::FirstEpisodes;
 
 /// What is kept of an episode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,6 +51,9 @@ pub struct Watch {
     /// Sums over them; nothing in a run whose earlier part did not count them.
     #[serde(default)]
     pub totals: Option<Totals>,
+    /// The first episodes, where budgets come down from what they cost.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first: Option<FirstEpisodes>,
     window: usize,
     /// Latest episodes that constraints look at: one a world, so that each counts about once and
     /// the mean follows the policy as fast as episodes end.
@@ -66,6 +70,7 @@ impl Watch {
             fresh: 0,
             waited: 0,
             totals: Some(Totals { cost: 0.0, violations: vec![0.0; config.constraints.len()] }),
+            first: config.learning.budget_annealing.map(|_| FirstEpisodes::default()),
             window: config.reporting.window.max(config.sampling.lanes),
             constraint_window: config.sampling.lanes,
         }
@@ -79,12 +84,14 @@ impl Watch {
             return Err(LearnError::Config(problem.into()));
         }
         let (fresh, waited, totals) = (self.fresh, self.waited, self.totals.clone());
+        let first = self.first.clone();
         Ok(Watch {
             recent: self.recent.clone(),
             episodes: self.episodes,
             fresh,
             waited,
             totals,
+            first,
             ..Watch::new(config)
         })
     }
@@ -100,6 +107,9 @@ impl Watch {
             {
                 *sum += (cost - constraint.budget).max(0.0);
             }
+        }
+        if let Some(first) = &mut self.first {
+            first.add(&constrained, self.constraint_window);
         }
         let costs = episode.costs.iter().map(|one| (format!("cost/{}", one.name), one.cost));
         let stats = episode.stats.iter().map(|(name, value)| (format!("stats/{name}"), *value));
@@ -147,6 +157,14 @@ impl Watch {
         last.details.iter().map(mean).collect()
     }
 
+    /// Cost of an episode that learning aims at when so much of the training is over. Where budgets
+    /// are annealed and no episode has ended yet, that is what it will be in the end.
+    #[must_use]
+    pub fn aim(&self, config: &TrainConfig, constraint: usize, done: f64) -> f64 {
+        let measured = self.first.as_ref().and_then(|first| first.mean(constraint));
+        config.aim_after(constraint, done, measured.unwrap_or_default())
+    }
+
     /// What each constraint costs at present, when so much of the training is over; nothing while
     /// that is not known yet.
     #[must_use]
@@ -155,7 +173,7 @@ impl Watch {
         let count = self.constraint_window.min(self.recent.len());
         let signal = |index: usize, episode_cost: f64| Signal {
             done,
-            ..Signal::steady(episode_cost, config.aim(index), episode_steps)
+            ..Signal::steady(episode_cost, self.aim(config, index, done), episode_steps)
         };
         let latest = |index: usize, count: usize| {
             self.recent.iter().rev().take(count).map(move |one| one.constrained[index])
@@ -264,6 +282,37 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// By hand: two worlds, so the first two episodes are what annealed budgets start at: costs of
+    /// 150 and 50, jumps of 1 and 2. Half way to a share of 0.5, the first aim is half way from
+    /// 100 to 40, the budget of 50 with a share of 0.8; the second begins below its aim of 2.4.
+    /// What the later episodes cost, or how often the watch is saved, changes nothing.
+    #[test]
+    fn annealed_aims_start_at_the_first_episodes() {
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoPid, Preset::Paper, EnvConfig::new("test"));
+        config.sampling.lanes = 2;
+        config.budget_share = 0.8;
+        config.learning.budget_annealing = Some(0.5);
+        config.constraints = vec![
+            Constraint { term: None, budget: 50.0 },
+            Constraint { term: Some("jumps".into()), budget: 3.0 },
+        ];
+        let mut watch = Watch::new(&config);
+        for (cost, jumps) in [(150.0, 1.0), (50.0, 2.0), (900.0, 90.0)] {
+            let saved = serde_json::to_value(&watch).unwrap();
+            watch = serde_json::from_value::<Watch>(saved).unwrap().resumed(&config).unwrap();
+            watch.add(&episode(cost, jumps), &config.constraints).unwrap();
+        }
+        for (done, first) in [(0.0, 100.0), (0.25, 70.0), (0.5, 40.0), (1.0, 40.0)] {
+            let signals = watch.signals(&config, done, &[0.0; 2]);
+            assert!((signals[0].episode_budget - first).abs() < 1e-9, "{done}: {signals:?}");
+            assert!((signals[1].episode_budget - 2.4).abs() < 1e-9, "{done}: {signals:?}");
+        }
+        config.learning.budget_annealing = None;
+        let written = serde_json::to_string(&Watch::new(&config)).unwrap();
+        assert!(!written.contains("first"), "{written}");
     }
 
     /// A15: each episode counts as new once, in the rollout that it finished in; rollouts without
