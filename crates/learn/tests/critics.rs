@@ -123,6 +123,60 @@ fn costs_end_at_the_time_out_where_critics_see_it_coming() {
     }
 }
 
+/// Andrychowicz et al. 2020 (arXiv 2006.05990) estimate advantages anew before a pass, by the
+/// values of that moment: A_t = sum over k of (gamma lambda)^k (c + gamma V' - V) up to an
+/// episode's end (Schulman et al. 2016, equation 16). The cost critic says 0.7 more of everything
+/// here than when it acted, in every trajectory of the rollout and after its last step; what came
+/// after a time-out is left out, since critics see it coming.
+#[test]
+fn advantages_are_estimated_anew_from_what_critics_say_now() {
+    let mut config = seen_by_critics(cut(AlgorithmKind::PpoLag));
+    config.learning.recompute_advantages = true;
+    let mut session = Session::new(config.clone(), &Beginning::Nothing, &tiny::worlds).unwrap();
+    let first = session.gatherer.next_rollout().unwrap();
+    session.go_on(first);
+    let rollout = session.gatherer.next_rollout().unwrap();
+    let prepared = session.learner.prepare(&rollout);
+    // The bias of the value's first output, before those of its slopes.
+    let inputs = session.learner.shape().critic_inputs;
+    let bias = session.learner.parameters.len() - 1 - inputs;
+    session.learner.parameters[bias] += 0.7;
+    session.learner.replaced();
+    let anew = session.learner.prepare_anew(&prepared);
+    assert_eq!(anew.old_values, prepared.old_values);
+    let (moments, steps) = (session.learner.returns[1], rollout.steps());
+    let outputs = session.learner.shape().outputs();
+    let (gamma, lambda) = (config.learning.gamma, config.learning.gae_lambda);
+    let mut ends = 0;
+    for lane in 0..rollout.lanes() {
+        let (part, own) = rollout.find(lane);
+        let row = |step: usize| step * part.lanes + own;
+        let value = |step: usize| {
+            let said = part.outputs[row(step) * outputs + outputs - 1];
+            f64::from(moments.denormalise(said + 0.7))
+        };
+        let surprise = |step: usize| {
+            let after = if part.done[row(step)] { 0.0 } else { gamma * value(step + 1) };
+            f64::from(part.costs[row(step)]) + after - value(step)
+        };
+        for step in 0..steps {
+            let last = (step..steps - 1).find(|&later| part.done[row(later)]).unwrap_or(steps - 1);
+            ends += usize::from(last < steps - 1);
+            let expected: f64 = (step..=last)
+                .map(|later| (gamma * lambda).powi((later - step) as i32) * surprise(later))
+                .sum();
+            let found = f64::from(anew.advantages[1][lane * steps + step]);
+            assert!((found - expected).abs() < 1e-4, "{lane}, {step}: {found}, not {expected}");
+            let target = moments.normalise((expected + value(step)) as f32);
+            assert!((anew.targets[1][lane * steps + step] - target).abs() < 1e-4);
+        }
+    }
+    assert!(ends > 100, "{ends}");
+    // The reward's critic says what it said.
+    let apart = |a: &[f32], b: &[f32]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3);
+    assert!(apart(&anew.advantages[1], &prepared.advantages[1]));
+}
+
 /// A5: a rollout brings the critics as many steps as are asked for, and the policy one.
 #[test]
 fn critics_make_their_steps() {
@@ -151,10 +205,16 @@ fn runs_resume_exactly_with_each_of_it() {
         config.learning.normaliser_horizon = 2000.0;
         config
     };
+    let anew = |mut config: TrainConfig| {
+        (config.learning.recompute_advantages, config.network.policy_scale) = (true, 0.01);
+        config.learning.epochs = 3;
+        config
+    };
     for (name, mut config) in [
         ("cut", cut(AlgorithmKind::Cpo)),
         ("seen", seen_by_critics(cut(AlgorithmKind::TrpoPid))),
         ("popart", popart(seen_by_critics(tiny::config(AlgorithmKind::PpoPid)))),
+        ("anew", anew(tiny::config(AlgorithmKind::Cup))),
     ] {
         config.frames = 4 * config.frames_per_rollout();
         let (straight, broken) = (

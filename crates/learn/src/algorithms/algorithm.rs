@@ -96,18 +96,19 @@ pub(super) fn learn_in_epochs<A: Algorithm + ?Sized>(
     if moves == MultiplierUpdate::Rollout {
         algorithm.constrain(&signals(&rollout.mean_costs));
     }
-    let made = go_through(learner, rollout, None, epochs, means, |learner, lanes, means| {
-        let mut minibatch = learner.minibatch(rollout, lanes);
-        let signals = signals(&minibatch.mean_costs);
-        if moves == MultiplierUpdate::Minibatch {
-            algorithm.constrain(&signals);
-        }
-        algorithm.update(learner, &mut minibatch, &signals, means)?;
-        if moves == MultiplierUpdate::AfterMinibatch {
-            algorithm.constrain(&signals);
-        }
-        Ok(())
-    })?;
+    let made =
+        go_through(learner, rollout, None, epochs, means, |learner, rollout, lanes, means| {
+            let mut minibatch = learner.minibatch(rollout, lanes);
+            let signals = signals(&minibatch.mean_costs);
+            if moves == MultiplierUpdate::Minibatch {
+                algorithm.constrain(&signals);
+            }
+            algorithm.update(learner, &mut minibatch, &signals, means)?;
+            if moves == MultiplierUpdate::AfterMinibatch {
+                algorithm.constrain(&signals);
+            }
+            Ok(())
+        })?;
     means.add("epochs", f64::from(made));
     Ok(())
 }
@@ -121,11 +122,17 @@ pub(super) fn go_through(
     from: Option<&Policy>,
     epochs: &Epochs,
     means: &mut Means,
-    mut update: impl FnMut(&mut Learner, &[usize], &mut Means) -> Result<(), LearnError>,
+    mut update: impl FnMut(&mut Learner, &Prepared<'_>, &[usize], &mut Means) -> Result<(), LearnError>,
 ) -> Result<u32, LearnError> {
-    let mut made = 0;
+    let (mut made, mut anew) = (0, None);
     for epoch in 0..epochs.count {
-        epochs.minibatches(epoch).iter().try_for_each(|lanes| update(learner, lanes, means))?;
+        if epoch > 0 && learner.config.learning.recompute_advantages {
+            anew = Some(learner.prepare_anew(rollout));
+        }
+        let rollout = anew.as_ref().unwrap_or(rollout);
+        for lanes in &epochs.minibatches(epoch) {
+            update(learner, rollout, lanes, means)?;
+        }
         made += 1;
         if epoch + 1 < epochs.count && epochs.end_at(|| learner.divergence(rollout, from)) {
             break;

@@ -73,8 +73,13 @@ impl Algorithm for Cup {
         let all: Vec<usize> = (0..count).collect();
         let halfway = learner.policy(&mut learner.minibatch(rollout, &all));
         let networks = learner.shape().networks.len();
-        let made =
-            go_through(learner, rollout, Some(&halfway), epochs, means, |learner, some, means| {
+        let made = go_through(
+            learner,
+            rollout,
+            Some(&halfway),
+            epochs,
+            means,
+            |learner, rollout, some, means| {
                 let rows = (0..steps)
                     .flat_map(|step| some.iter().map(move |number| step * count + number));
                 let halfway = halfway.of_rows(rows);
@@ -94,7 +99,8 @@ impl Algorithm for Cup {
                     .into_iter()
                     .for_each(|loss| means.add("projection_loss", loss));
                 Ok(())
-            })?;
+            },
+        )?;
         means.add("projection_epochs", f64::from(made));
         Ok(())
     }

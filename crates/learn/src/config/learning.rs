@@ -66,6 +66,10 @@ pub struct LearningConfig {
     pub epochs: usize,
     /// Parts that the rollout's trajectories are dealt into in each pass.
     pub minibatches: usize,
+    /// Before every pass but the first, advantages and targets are estimated anew from what the
+    /// critics say by then (Andrychowicz et al. 2020, arXiv 2006.05990), for a forward pass more.
+    #[serde(default)]
+    pub recompute_advantages: bool,
     /// Steps that gradients flow back through: longer rollouts are learned from in trajectories of
     /// so many steps, each of which begins in the state that the actor had there. Advantages are
     /// still those of the whole rollout. `null` for whole rollouts.

@@ -25,6 +25,15 @@ pub struct NetworkConfig {
     pub separate: bool,
     /// Initial weights.
     pub initialisation: Initialisation,
+    /// Factor of the initial weights of the policy's last layer. With 0.01 the first policy is
+    /// nearly uniform, whatever it sees (Andrychowicz et al. 2020, arXiv 2006.05990).
+    #[serde(default = "one")]
+    pub policy_scale: f64,
+}
+
+/// What files of before say nothing of.
+fn one() -> f64 {
+    1.0
 }
 
 names! {

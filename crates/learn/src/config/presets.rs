@@ -61,6 +61,7 @@ impl TrainConfig {
                     (true, false) => Initialisation::OrthogonalHeads,
                     (true, true) => Initialisation::Uniform,
                 },
+                policy_scale: 1.0,
             },
             sampling: SamplingConfig {
                 lanes: 32,
@@ -76,6 +77,7 @@ impl TrainConfig {
             learning: LearningConfig {
                 epochs: if repeats { 10 } else { 1 },
                 minibatches: if repeats { 16 } else { 1 },
+                recompute_advantages: false,
                 recurrence: None,
                 gamma: 0.99,
                 gae_lambda: 0.95,

@@ -191,6 +191,7 @@ impl TrainConfig {
             ("the exploration coefficient", learning.exploration_coefficient, 0.0, 1e3),
             ("the seconds between reports", self.reporting.report_seconds, 0.0, f64::MAX),
             ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
+            ("network.policy_scale", self.network.policy_scale, 0.0, 10.0),
             ("the share of the budget", self.budget_share, 0.0, 2.0),
             ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
             (

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::learning::gather::gather;
+use crate::learning::gather::{gather, sequences};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 pub use crate::learning::minibatch::{Critic, Minibatch};
@@ -13,7 +13,7 @@ use crate::learning::optimiser::Adam;
 use crate::learning::policy::Policy;
 use crate::learning::popart::preserve_outputs;
 pub use crate::learning::targets::Prepared;
-use crate::learning::targets::prepare;
+use crate::learning::targets::{prepare, prepare_anew};
 use crate::networks::cpu::vectors::Vectors;
 use crate::networks::device::ComputeDevice;
 use crate::networks::{ModelSequences, ModelShape, Published, Stack};
@@ -61,7 +61,7 @@ impl Learner {
     /// A learner with fresh weights.
     pub fn new(config: &TrainConfig, shape: &ModelShape, device: &ComputeDevice) -> Learner {
         let scheme = config.network.initialisation;
-        let parameters: Vec<f32> = shape
+        let mut parameters: Vec<f32> = shape
             .networks
             .iter()
             .enumerate()
@@ -69,6 +69,8 @@ impl Learner {
                 network.initial_parameters(scheme, config.seed, index as u64)
             })
             .collect();
+        // The policy is the first head of the first network, at the front of the vector.
+        shape.networks[0].scale_head(0, config.network.policy_scale as f32, &mut parameters);
         Learner {
             networks: match config.learning.recurrence {
                 None => Stack::new(shape, device, config.learning.threads),
@@ -152,6 +154,25 @@ impl Learner {
             self.stale[network] = true;
         }
         prepared
+    }
+
+    /// The same rollout with the advantages and targets that follow from what the critics say of it
+    /// now.
+    pub fn prepare_anew<'a>(&mut self, prepared: &Prepared<'a>) -> Prepared<'a> {
+        self.refresh();
+        let rollout = prepared.rollout;
+        let (steps, count) = (rollout.trajectory_steps(), rollout.trajectories());
+        let all: Vec<usize> = (0..count).collect();
+        // With a step more than is learned from: the value of what comes after the last.
+        let mut batch = sequences(rollout, &self.shape, &all, steps + 1);
+        let rows = self.networks.forward(0..self.shape.networks.len(), &mut batch);
+        let (width, first) = (self.shape.outputs(), self.shape.value_column());
+        let value = |critic: usize, lane: usize, step: usize| {
+            let cut = (step / steps).min(count / rollout.lanes() - 1);
+            let row = (step - cut * steps) * count + cut * rollout.lanes() + lane;
+            rows[row * width + first + critic]
+        };
+        prepare_anew(prepared, &self.shape, &self.config, &self.returns, value)
     }
 
     /// Some trajectories.

@@ -100,68 +100,117 @@ pub(crate) fn prepare<'a>(
     let mut moved = Vec::new();
     for critic in 0..moments_of.len() {
         let moments = &mut moments_of[if shared { 0 } else { critic }];
-        let raw = |moments: &Moments, value: f32| match () {
-            () if shared && critic > 0 => value.clamp(-CLIP, CLIP),
-            () if popart => moments.scale_up(value),
-            () => moments.denormalise(value),
-        };
-        let mut advantages = vec![0.0; steps * lanes];
-        let mut returns = vec![0.0; steps * lanes];
-        let mut old_values = vec![0.0; steps * lanes];
-        for lane in 0..lanes {
+        let value = |lane: usize, step: usize| {
             let (part, own) = rollout.find(lane);
-            let row = |step: usize| step * part.lanes + own;
-            let normalised: Vec<f32> =
-                (0..=steps).map(|step| part.outputs[row(step) * width + first + critic]).collect();
-            let values: Vec<f32> = normalised.iter().map(|&value| raw(moments, value)).collect();
-            let rewards: Vec<f32> = (0..steps)
-                .map(|step| match critic {
-                    0 => part.rewards[row(step)],
-                    cost => part.costs[row(step) * constraints + cost - 1],
-                })
-                .collect();
-            let done: Vec<bool> = (0..steps).map(|step| part.done[row(step)]).collect();
-            let mut cut_off_values = vec![0.0; steps];
-            if settings.bootstraps(critic > 0) {
-                for (cut, outputs) in part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own)
-                {
-                    cut_off_values[cut / part.lanes] = raw(moments, outputs[first + critic]);
-                }
-            }
-            let out = &mut advantages[lane * steps..(lane + 1) * steps];
-            let lane_values = Lane {
-                rewards: &rewards,
-                done: &done,
-                cut_off_values: &cut_off_values,
-                values: &values,
-            };
-            let gamma = if critic == 0 {
-                settings.gamma
-            } else {
-                settings.cost_gamma.unwrap_or(settings.gamma)
-            };
-            generalised_advantages(lane_values, gamma as f32, settings.gae_lambda as f32, out);
-            for step in 0..steps {
-                returns[lane * steps + step] = out[step] + values[step];
-                old_values[lane * steps + step] = normalised[step];
-            }
-        }
+            part.outputs[(step * part.lanes + own) * width + first + critic]
+        };
+        let (advantages, returns) = estimates(rollout, shape, config, critic, moments, value);
+        let mut old_values: Vec<f32> =
+            (0..lanes).flat_map(|lane| (0..steps).map(move |step| value(lane, step))).collect();
         if popart {
             let before = *moments;
             moments.update_forgetting(&returns, settings.normaliser_horizon);
             old_values
                 .iter_mut()
                 .for_each(|value| *value = moments.scale_down(before.scale_up(*value)));
-            prepared.targets.push(returns.iter().map(|&value| moments.scale_down(value)).collect());
             moved.push((critic, before, *moments));
         } else {
             moments.update(&returns);
-            prepared.targets.push(returns.iter().map(|&value| moments.normalise(value)).collect());
         }
+        prepared.targets.push(normalised(&returns, moments, config));
         prepared.advantages.push(advantages);
         prepared.old_values.push(old_values);
     }
     let all: Vec<usize> = (0..rollout.trajectories()).collect();
     prepared.mean_costs = mean_costs(rollout, &all, constraints);
     (prepared, moved)
+}
+
+/// The same rollout with the advantages and targets that follow from other normalised values of a
+/// critic at each lane and step, the one after the last too. What came after a time-out keeps the
+/// worth that the actors gave it.
+pub(crate) fn prepare_anew<'a>(
+    prepared: &Prepared<'a>,
+    shape: &ModelShape,
+    config: &TrainConfig,
+    moments_of: &[Moments],
+    value: impl Fn(usize, usize, usize) -> f32,
+) -> Prepared<'a> {
+    let shared = config.learning.cost_uses_reward_normaliser;
+    let (mut advantages, mut targets) = (Vec::new(), Vec::new());
+    for critic in 0..moments_of.len() {
+        let moments = &moments_of[if shared { 0 } else { critic }];
+        let value = |lane: usize, step: usize| value(critic, lane, step);
+        let (own, returns) = estimates(prepared.rollout, shape, config, critic, moments, value);
+        targets.push(normalised(&returns, moments, config));
+        advantages.push(own);
+    }
+    let (old_values, mean_costs) = (prepared.old_values.clone(), prepared.mean_costs.clone());
+    Prepared { rollout: prepared.rollout, advantages, targets, old_values, mean_costs }
+}
+
+/// Returns as a critic is to predict them.
+fn normalised(returns: &[f32], moments: &Moments, config: &TrainConfig) -> Vec<f32> {
+    match config.learning.normaliser {
+        ReturnNormaliser::PopArt => {
+            returns.iter().map(|&value| moments.scale_down(value)).collect()
+        }
+        ReturnNormaliser::Running => {
+            returns.iter().map(|&value| moments.normalise(value)).collect()
+        }
+    }
+}
+
+/// Advantages and returns of a critic, in raw units, from its normalised value of each lane and
+/// step.
+fn estimates(
+    rollout: &Rollout,
+    shape: &ModelShape,
+    config: &TrainConfig,
+    critic: usize,
+    moments: &Moments,
+    value: impl Fn(usize, usize) -> f32,
+) -> (Vec<f32>, Vec<f32>) {
+    let (steps, lanes) = (rollout.steps(), rollout.lanes());
+    let (constraints, settings) = (config.constraints.len(), &config.learning);
+    let column = shape.value_column() + critic;
+    let raw = |value: f32| match settings.normaliser {
+        _ if settings.cost_uses_reward_normaliser && critic > 0 => value.clamp(-CLIP, CLIP),
+        ReturnNormaliser::PopArt => moments.scale_up(value),
+        ReturnNormaliser::Running => moments.denormalise(value),
+    };
+    let gamma =
+        if critic == 0 { settings.gamma } else { settings.cost_gamma.unwrap_or(settings.gamma) };
+    let mut advantages = vec![0.0; steps * lanes];
+    let mut returns = vec![0.0; steps * lanes];
+    for lane in 0..lanes {
+        let (part, own) = rollout.find(lane);
+        let row = |step: usize| step * part.lanes + own;
+        let values: Vec<f32> = (0..=steps).map(|step| raw(value(lane, step))).collect();
+        let rewards: Vec<f32> = (0..steps)
+            .map(|step| match critic {
+                0 => part.rewards[row(step)],
+                cost => part.costs[row(step) * constraints + cost - 1],
+            })
+            .collect();
+        let done: Vec<bool> = (0..steps).map(|step| part.done[row(step)]).collect();
+        let mut cut_off_values = vec![0.0; steps];
+        if settings.bootstraps(critic > 0) {
+            for (cut, outputs) in part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own) {
+                cut_off_values[cut / part.lanes] = raw(outputs[column]);
+            }
+        }
+        let out = &mut advantages[lane * steps..(lane + 1) * steps];
+        let lane_values = Lane {
+            rewards: &rewards,
+            done: &done,
+            cut_off_values: &cut_off_values,
+            values: &values,
+        };
+        generalised_advantages(lane_values, gamma as f32, settings.gae_lambda as f32, out);
+        for step in 0..steps {
+            returns[lane * steps + step] = out[step] + values[step];
+        }
+    }
+    (advantages, returns)
 }

@@ -16,6 +16,15 @@ impl NetworkShape {
         }
         values
     }
+
+    /// Multiplies the weights of a head by a factor.
+    pub fn scale_head(&self, head: usize, factor: f32, values: &mut [f32]) {
+        let name = format!("head{head}.weight");
+        let weights = self.parameters().into_iter().find(|parameter| parameter.name == name);
+        for value in weights.into_iter().flat_map(|parameter| parameter.range()) {
+            values[value] *= factor;
+        }
+    }
 }
 
 fn fill(values: &mut [f32], parameter: &Parameter, scheme: Initialisation, stream: &mut Stream) {
@@ -108,6 +117,30 @@ mod tests {
                         "{rows}x{columns}: {i}, {j}: {product}"
                     );
                 }
+            }
+        }
+    }
+
+    /// Andrychowicz et al. 2020 begin with weights of the policy's last layer that are a hundred
+    /// times smaller: of orthonormal columns each then has the length 0.01, and no other parameter
+    /// is another.
+    #[test]
+    fn a_head_alone_is_made_smaller() {
+        let shape =
+            NetworkShape { dense: vec![32], recurrent: Some(32), ..NetworkShape::default() };
+        let plain = shape.initial_parameters(Initialisation::Orthogonal, 1, 0);
+        let mut small = plain.clone();
+        shape.scale_head(0, 0.01, &mut small);
+        for parameter in shape.parameters() {
+            let (before, after) = (&plain[parameter.range()], &small[parameter.range()]);
+            if parameter.name == "head0.weight" {
+                for column in 0..parameter.outputs {
+                    let values = after.iter().skip(column).step_by(parameter.outputs);
+                    let length = values.map(|value| value * value).sum::<f32>().sqrt();
+                    assert!((length - 0.01).abs() < 1e-6, "{length}");
+                }
+            } else {
+                assert_eq!(before, after, "{}", parameter.name);
             }
         }
     }
