@@ -38,8 +38,7 @@ const HOUSES: &[House] = &[
         ],
     },
     House {
-        in_crate: "envs", folder: "", imports: 250,
-        without_circles: &["spaces", "interface", "scenarios", "registry", "maps", "single", "policies"],
+        in_crate: "envs", folder: "", without_circles: &[""], imports: 250,
         order: &[
             "error", "spaces", "interface", "scenarios", "registry", "maps", "options", "single", "policies",
             "own", "vec_env", "bench",
@@ -50,6 +49,31 @@ const HOUSES: &[House] = &[
         order: &[
             "error", "random", "threads", "statistics", "config", "team", "networks", "sampling", "learning",
             "algorithms", "runs",
+        ],
+    },
+    House {
+        in_crate: "envs", folder: "vec_env", without_circles: &["vec_env"], imports: 250,
+        order: &[
+            "chosen", "options", "lane_state", "alike", "checks", "lane", "job", "handover", "worker", "crew",
+            "mixed", "worlds",
+        ],
+    },
+    House {
+        in_crate: "serve", folder: "", without_circles: &[""], imports: 60,
+        order: &[
+            "answer", "door", "pages", "catalogue", "stages", "shared", "guard", "runs", "episodes", "show",
+            "server",
+        ],
+    },
+    House {
+        in_crate: "sweep", folder: "", without_circles: &[""], imports: 8,
+        order: &["option", "job", "grid", "paper", "file", "execute"],
+    },
+    House {
+        in_crate: "python", folder: "", without_circles: &[""], imports: 25,
+        order: &[
+            "errors", "pool", "memory", "arguments", "actions", "resets", "lane", "inner", "facts", "events",
+            "batch", "bind", "registry", "worlds", "program", "agent",
         ],
     },
 ];

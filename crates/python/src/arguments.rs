@@ -2,7 +2,7 @@
 
 use crate::errors::{INVALID_OPTION, raise};
 use hasard_envs::{Autoreset, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet};
-use pyo3::exceptions::{PyIndexError, PyTypeError};
+use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
@@ -301,4 +301,11 @@ fn unknown(py: Python<'_>, name: &str) -> PyResult<PyErr> {
         .extract()?;
     let hint = near.first().map_or_else(String::new, |near| format!("; did you mean '{near}'?"));
     Ok(PyTypeError::new_err(format!("unexpected keyword argument '{name}'{hint}")))
+}
+
+/// The error of a wrong number of lanes.
+pub(crate) fn one_a_lane(what: &str, lanes: usize, given: impl std::fmt::Display) -> PyErr {
+    PyValueError::new_err(format!(
+        "{what} must have one entry for each of {lanes} lanes, got {given}"
+    ))
 }

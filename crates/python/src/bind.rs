@@ -1,9 +1,10 @@
 //! Memory of the caller's for the results of all lanes, and of each group's.
 
 use crate::batch::Arrays;
+use crate::errors::Fault;
+use crate::facts::Facts;
 use crate::inner::Inner;
 use crate::memory::{Lent, bound};
-use crate::worlds::{Fault, Worlds};
 use hasard_envs::{Buffer, EnvError};
 use pyo3::prelude::*;
 use pyo3::types::PySlice;
@@ -24,9 +25,8 @@ fn part<'py>(array: &Bound<'py, PyAny>, lanes: &Range<usize>) -> PyResult<Bound<
     array.get_item(PySlice::new(array.py(), lanes.start as isize, lanes.end as isize, 1))
 }
 
-/// Lends the arrays to the worlds: whole, and cut for each group.
-pub fn bind(worlds: &Worlds, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<()> {
-    let facts = &worlds.facts;
+/// The arrays as memory to write to and as arrays to show: of each group, then whole.
+pub fn cut(facts: &Facts, given: &Given<'_, '_>) -> PyResult<(Vec<Memories>, Vec<Arrays>)> {
     let [height, width, channels] = facts.shape;
     // All are looked at before any is taken.
     let (lanes, terms) = (facts.lanes, facts.terms.len());
@@ -38,7 +38,7 @@ pub fn bind(worlds: &Worlds, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<
     given.cost_terms.map(|array| bound::<f32>("cost_terms", array, &[lanes, terms])).transpose()?;
     let (mut arrays, mut lent) = (Vec::new(), Vec::new());
     for slot in 0..=facts.groups {
-        let own = worlds.lanes_of(slot);
+        let own = facts.lanes_of(slot);
         let count = own.len();
         let cut = |array| part(array, &own);
         let (observations, rewards, costs) =
@@ -65,26 +65,25 @@ pub fn bind(worlds: &Worlds, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<
             truncated: Some(truncated.unbind()),
         });
     }
-    let replaced = worlds.with(py, |inner| {
-        idle(inner)?;
-        let slots = lent.into_iter().enumerate();
-        let batches = slots.map(|(slot, lent)| {
-            Some(lent.batch(inner.worlds().batch_of(worlds.lanes_of(slot).len())))
-        });
-        let batches: Vec<_> = batches.collect();
-        Ok(std::mem::replace(&mut inner.bound, batches))
-    })?;
-    drop(replaced);
-    let replaced = std::mem::replace(
-        &mut *worlds.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()),
-        arrays,
-    );
-    drop(replaced);
-    Ok(())
+    Ok((lent, arrays))
+}
+
+/// Lets batches write to the memory from now on; those that did before.
+pub fn lend(
+    facts: &Facts,
+    inner: &mut Inner,
+    lent: Vec<Memories>,
+) -> Result<Vec<Option<hasard_envs::Batch>>, Fault> {
+    idle(inner)?;
+    let slots = lent.into_iter().enumerate();
+    let batches = slots
+        .map(|(slot, lent)| Some(lent.batch(inner.worlds().batch_of(facts.lanes_of(slot).len()))));
+    let batches: Vec<_> = batches.collect();
+    Ok(std::mem::replace(&mut inner.bound, batches))
 }
 
 /// One slot's memory.
-struct Memories {
+pub struct Memories {
     observations: Lent<u8>,
     rewards: Lent<f32>,
     costs: Lent<f32>,

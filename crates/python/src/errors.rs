@@ -47,3 +47,20 @@ pub fn raise(py: Python<'_>, error: &EnvError) -> PyErr {
     };
     class.error(py, error.to_string())
 }
+
+/// What keeps a call from being done.
+pub enum Fault {
+    Env(EnvError),
+    Closed,
+    NotReset,
+    /// The first reset was of some lanes only.
+    FirstReset,
+    /// These lanes rest.
+    Resting(Vec<usize>),
+}
+
+impl From<EnvError> for Fault {
+    fn from(error: EnvError) -> Fault {
+        Fault::Env(error)
+    }
+}

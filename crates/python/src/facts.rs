@@ -30,6 +30,12 @@ pub struct Task {
 }
 
 impl Facts {
+    /// The lanes of a slot: of a group, or all of them.
+    pub fn lanes_of(&self, slot: usize) -> std::ops::Range<usize> {
+        let Facts { lanes, groups, .. } = *self;
+        if slot >= groups { 0..lanes } else { lanes * slot / groups..lanes * (slot + 1) / groups }
+    }
+
     /// Which task a lane has.
     pub fn task_of(&self, lane: usize) -> usize {
         lane % self.tasks.len()

@@ -1,7 +1,6 @@
 //! Which lanes are reset, and from which seeds.
 
-use crate::arguments::seed;
-use crate::worlds::one_a_lane;
+use crate::arguments::{one_a_lane, seed};
 use hasard_envs::Restart;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;

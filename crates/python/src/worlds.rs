@@ -6,7 +6,7 @@ use crate::actions::{read_actions, read_deltas};
 use crate::arguments;
 use crate::batch::{Arrays, Batch};
 use crate::errors::{
-    CLOSED, INVALID_ACTION, INVALID_OPTION, OUT_OF_TURN, RESET_NEEDED, WORLD_PANICKED, raise,
+    CLOSED, Fault, INVALID_ACTION, INVALID_OPTION, OUT_OF_TURN, RESET_NEEDED, WORLD_PANICKED, raise,
 };
 use crate::facts::{self, Facts, Task};
 use crate::inner::Inner;
@@ -14,28 +14,11 @@ use crate::pool::{Pool, array};
 use crate::resets::{self, Seeds};
 use hasard_envs::{Autoreset, Env, EnvError, EnvId, FinalObservations, LaneState, VecOptions};
 use hasard_play::ViewKind;
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
-
-/// What keeps a call from being done.
-pub enum Fault {
-    Env(EnvError),
-    Closed,
-    NotReset,
-    /// The first reset was of some lanes only.
-    FirstReset,
-    /// These lanes rest.
-    Resting(Vec<usize>),
-}
-
-impl From<EnvError> for Fault {
-    fn from(error: EnvError) -> Fault {
-        Fault::Env(error)
-    }
-}
 
 /// A batch that has been stepped.
 enum CameBack {
@@ -182,7 +165,7 @@ impl Worlds {
 
     /// Shows what a slot's step brought.
     fn tell(&self, py: Python<'_>, slot: usize, came_back: CameBack) -> PyResult<Batch> {
-        let lanes = self.lanes_of(slot).map(|lane| lane as i32).collect();
+        let lanes = self.facts.lanes_of(slot).map(|lane| lane as i32).collect();
         match came_back {
             CameBack::Own(batch) => self.show(py, batch, lanes),
             CameBack::Bound(mut told) => {
@@ -212,12 +195,6 @@ impl Worlds {
         };
         inner.bound[slot] = Some(batch);
         told
-    }
-
-    /// The lanes of a slot.
-    pub(crate) fn lanes_of(&self, slot: usize) -> std::ops::Range<usize> {
-        let Facts { lanes, groups, .. } = self.facts;
-        if slot >= groups { 0..lanes } else { lanes * slot / groups..lanes * (slot + 1) / groups }
     }
 
     /// Whether lanes may be stepped.
@@ -483,7 +460,7 @@ impl Worlds {
         #[pyo3(from_py_with = arguments::group)] group: usize,
     ) -> PyResult<()> {
         self.check_group(py, group)?;
-        let lanes = self.lanes_of(group);
+        let lanes = self.facts.lanes_of(group);
         let (actions, deltas) = self.read(actions, deltas, lanes.len(), |row| lanes.start + row)?;
         self.with(py, |inner| {
             self.ready(inner, lanes.clone())?;
@@ -562,7 +539,13 @@ impl Worlds {
     ) -> PyResult<()> {
         let given =
             crate::bind::Given { observations, rewards, costs, terminated, truncated, cost_terms };
-        crate::bind::bind(self, py, &given)
+        let (lent, arrays) = crate::bind::cut(&self.facts, &given)?;
+        drop(self.with(py, |inner| crate::bind::lend(&self.facts, inner, lent))?);
+        let mut bound = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let replaced = std::mem::replace(&mut *bound, arrays);
+        drop(bound);
+        drop(replaced);
+        Ok(())
     }
 
     /// unbind()
@@ -876,11 +859,4 @@ impl Worlds {
     fn __repr__(&self) -> String {
         format!("<Worlds {} x {}>", self.env_id(), self.facts.lanes)
     }
-}
-
-/// What a wrong number of lanes is told as.
-pub(crate) fn one_a_lane(what: &str, lanes: usize, given: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(format!(
-        "{what} must have one entry for each of {lanes} lanes, got {given}"
-    ))
 }

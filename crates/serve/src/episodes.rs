@@ -1,7 +1,7 @@
 //! Recorded episodes: the table of the best within the budget, downloads, films.
 
 use crate::answer::{aside, json_of, refusal};
-use crate::server::Shared;
+use crate::shared::Shared;
 use axum::extract::{Query, State};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};

@@ -2,7 +2,7 @@
 //! neither by a request across origins nor by a name that it lets point here (DNS rebinding).
 
 use crate::answer::refusal;
-use crate::server::Shared;
+use crate::shared::Shared;
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;

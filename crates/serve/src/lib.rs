@@ -6,7 +6,10 @@
 //! | [`Server`] | the socket, the routes, the thread pool |
 //! | `guard` | who may ask: Host, Origin, token; headers of every answer |
 //! | `door` | how many may ask: connections, and those that say nothing |
-//! | `runs` | run directories found and read from where they were left off |
+//! | `catalogue` | run directories found and read from where they were left off |
+//! | `stages` | stages built lately, shared by their viewers |
+//! | `shared` | what the routes share |
+//! | `runs` | what the page asks of runs |
 //! | `episodes` | recorded episodes: the table of the best, downloads, films |
 //! | `show` | a world for a viewer: rehearsed and watched, or played; frames over a WebSocket |
 //! | `pages` | HTML, CSS and ES modules, embedded |
@@ -22,12 +25,16 @@
 )]
 
 mod answer;
+mod catalogue;
 mod door;
 mod episodes;
 mod guard;
 mod pages;
 mod runs;
 mod server;
+mod shared;
 mod show;
+mod stages;
 
-pub use server::{Agents, Server, Settings};
+pub use server::{Server, Settings};
+pub use shared::Agents;

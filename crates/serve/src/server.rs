@@ -1,21 +1,21 @@
-//! The socket, the routes and what they share.
+//! The socket and the routes.
 
 use crate::answer::{aside, json_of, refusal};
+use crate::catalogue::Catalogue;
 use crate::door::{CONNECTIONS, Door};
-use crate::runs::Catalogue;
+use crate::shared::{Agents, Shared};
+use crate::stages::Stages;
 use crate::{episodes, guard, pages, runs, show};
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, State};
 use axum::http::{StatusCode, Uri};
 use axum::response::Response;
 use axum::routing::{get, post};
-use hasard_envs::{Env, EnvId, EnvOptions, RuleSet};
-use hasard_learn::runs::evaluate::{Agent, Choice};
-use hasard_learn::runs::zoo_results::ZooResult;
+use hasard_envs::{EnvId, RuleSet};
 use serde_json::{Value, json};
 use std::io;
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock};
 use tokio::sync::Semaphore;
 
@@ -26,31 +26,6 @@ const POLICIES: [&str; 6] =
     ["random", "sticky:4", "sticky:10", "noop", "hold:MOVE_FORWARD", "hold:MOVE_FORWARD+SPEED"];
 /// Films and reports in the making at a time: each keeps a core busy.
 const LONG_JOBS: usize = 2;
-
-/// Trained agents, which only the program knows how to find and to equip.
-pub trait Agents: Send + Sync {
-    /// Options of the environment that the agent of a run was trained in, and its id.
-    ///
-    /// # Errors
-    /// One line that names the run and the remedy.
-    fn options(&self, run: &Path) -> Result<(String, EnvOptions), String>;
-    /// The agent of a run for one world like this one: the newest checkpoint, or the best.
-    ///
-    /// # Errors
-    /// As above.
-    fn load(&self, run: &Path, best: bool, choice: Choice, env: &Env) -> Result<Agent, String>;
-    /// Names of agents that come with the program.
-    fn zoo(&self) -> Vec<String>;
-    /// The directory of one of those.
-    ///
-    /// # Errors
-    /// As above.
-    fn zoo_run(&self, name: &str) -> Result<PathBuf, String>;
-    /// What those are worth.
-    fn zoo_results(&self) -> Vec<ZooResult> {
-        Vec::new()
-    }
-}
 
 /// What is served, and to whom.
 pub struct Settings {
@@ -66,18 +41,6 @@ pub struct Settings {
     pub agents: Arc<dyn Agents>,
     /// Whether a visitor may write notes, and move runs to the trash.
     pub edit: bool,
-}
-
-/// What the routes share.
-pub(crate) struct Shared {
-    pub token: Option<String>,
-    pub episodes: PathBuf,
-    pub agents: Arc<dyn Agents>,
-    pub edit: bool,
-    pub catalogue: Mutex<Catalogue>,
-    pub stages: show::Stages,
-    pub shows: Arc<Semaphore>,
-    pub long_jobs: Arc<Semaphore>,
 }
 
 /// A server that listens.
@@ -107,7 +70,7 @@ impl Server {
             agents: settings.agents,
             edit: settings.edit,
             catalogue: Mutex::new(Catalogue::new(settings.folders)),
-            stages: show::Stages::default(),
+            stages: Stages::default(),
             shows: Arc::new(Semaphore::new(SHOWS)),
             long_jobs: Arc::new(Semaphore::new(LONG_JOBS)),
         };

@@ -21,8 +21,9 @@
 //! options.cost-scale = [0.5, 2]
 //! ```
 
-use crate::grid::{Grid, OptionValue, Sweep};
+use crate::grid::{Grid, Sweep};
 use crate::one_line;
+use crate::option::OptionValue;
 use crate::paper;
 use std::path::PathBuf;
 use toml::{Table, Value};

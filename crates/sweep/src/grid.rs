@@ -1,6 +1,8 @@
 //! What a sweep runs.
 
-use crate::{Job, one_line};
+use crate::job::Job;
+use crate::one_line;
+use crate::option::OptionValue;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -10,15 +12,6 @@ const MAX_JOBS: usize = 100_000;
 /// The benchmark's scenarios as environment ids spell them, in the order of the paper's tables.
 pub(crate) fn scenarios() -> [&'static str; 6] {
     hasard_envs::Scenario::in_paper_order().map(hasard_envs::Scenario::name)
-}
-
-/// A value of an option of `hasard train`.
-#[derive(Clone, PartialEq, Debug)]
-pub enum OptionValue {
-    /// A switch: given or not.
-    Switch(bool),
-    /// A text or number, as written on the command line.
-    Text(String),
 }
 
 /// All combinations of its lists are run.

@@ -1,6 +1,6 @@
 //! One run of a sweep.
 
-use crate::grid::OptionValue;
+use crate::option::OptionValue;
 use hasard_media::shell::quote;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

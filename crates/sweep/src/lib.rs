@@ -34,11 +34,13 @@ mod execute;
 mod file;
 mod grid;
 mod job;
+mod option;
 pub mod paper;
 
 pub use execute::{Event, STOPS_WITH_INPUT, Stop, Summary, run_jobs};
-pub use grid::{Grid, OptionValue, Sweep};
+pub use grid::{Grid, Sweep};
 pub use job::{Job, State};
+pub use option::OptionValue;
 
 /// A message that may quote a file by anyone: one line of bounded length, and nothing in it
 /// commands a terminal.

@@ -1,7 +1,8 @@
 //! Experiments by name: each table and figure of the paper with its preset and numbers of frames,
 //! and the quick preset's own; [`Sweep::scale_frames`] makes them smaller.
 
-use crate::grid::{Grid, OptionValue, Sweep, scenarios};
+use crate::grid::{Grid, Sweep, scenarios};
+use crate::option::OptionValue;
 use std::path::PathBuf;
 
 /// An experiment.

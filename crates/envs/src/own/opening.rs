@@ -2,16 +2,17 @@
 //! things are put down later.
 
 use super::model::{Facing, Goal, Height, Place, Spawn};
+use super::placing::{body, drawn_place, move_player};
 use super::program::Program;
-use super::rules::{OwnRules, body};
+use super::rules::OwnRules;
+use super::walkers::Walker;
 use crate::scenarios::common::stage;
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::{ActorId, ActorKind, World};
 use std::sync::atomic::Ordering;
 
-/// Tries to find a free place for a thing, and for the agent.
+/// Tries to find a free place for a thing.
 const TRIES: u32 = 200;
-const PLAYER_TRIES: u32 = 2_000;
 /// Most slots of things in a world: what more would come is left out.
 const MOST_THINGS: usize = 4_000;
 
@@ -80,7 +81,7 @@ impl OwnRules {
                 actor.speed = spawn.speed.map_or(actor.speed, Fixed::from_int);
             }
             if spawn.goal != Goal::None {
-                self.set_out(id, index);
+                self.walkers.push(Walker::new(id, index));
             }
             return Some(id);
         }
@@ -110,53 +111,6 @@ fn drawn_kind(spawn: &Spawn, world: &mut World) -> ActorKind {
         drawn -= weight;
     }
     spawn.kinds[0].0
-}
-
-/// A random point of a place; none where it fell into rock.
-pub(super) fn drawn_place(
-    program: &Program,
-    place: Place,
-    height: Height,
-    rock: bool,
-    world: &mut World,
-) -> Option<[Fixed; 3]> {
-    let area = match place {
-        Place::Area(area) => area,
-        _ => match program.areas_of(place) {
-            [] => return None,
-            [area] => *area,
-            areas => areas[world.rng.below(areas.len() as u32) as usize],
-        },
-    };
-    let (x, y) = stage::point_in(world, area);
-    if !rock && !world.map.is_inside(x, y) {
-        return None;
-    }
-    let z = match height {
-        Height::At(z) => Fixed::from_int(z),
-        Height::Above(above) => {
-            world.sector(world.map.sector_at(x, y)).floor + Fixed::from_int(above)
-        }
-    };
-    Some([x, y, z])
-}
-
-/// Moves the agent to a random point of a place, if there is room for it.
-pub(super) fn move_player(
-    program: &Program,
-    place: Place,
-    height: Height,
-    tries: &mut u32,
-    world: &mut World,
-) {
-    for _ in 0..PLAYER_TRIES.min(*tries) {
-        *tries -= 1;
-        if let Some([x, y, z]) = drawn_place(program, place, height, false, world)
-            && world.set_position(body(world), x, y, z)
-        {
-            return;
-        }
-    }
 }
 
 /// The agent enters.

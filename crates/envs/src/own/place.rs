@@ -1,8 +1,7 @@
 //! Files of scenarios where ids stand: `my_task.toml`, or `my_task.toml#2` for its second level.
 
 use super::map_file;
-use super::task::register;
-use crate::{EnvError, EnvId};
+use crate::EnvError;
 use std::io::Read;
 use std::path::Path;
 
@@ -45,32 +44,6 @@ pub fn read_text(path: &Path) -> Result<String, EnvError> {
     })?;
     // A run needs nothing but the text: the map comes with it.
     map_file::with_maps(text, path.parent().unwrap_or(Path::new(""))).map_err(wrong)
-}
-
-/// Reads and registers the scenario of a file, and gives the environment that `text` names:
-/// `my_task.toml` its first level, `my_task.toml#2` its second.
-///
-/// # Errors
-/// One line: the file's first mistake with its line and column, and how many there are.
-pub fn open(text: &str) -> Result<EnvId, EnvError> {
-    let (path, level) = match text.rsplit_once('#') {
-        Some((path, level)) if is_file(path) => (path, Some(level)),
-        _ => (text, None),
-    };
-    let scenario = register(path, &read_text(Path::new(path))?)?;
-    let levels = scenario.levels.max(1);
-    let level = match level.map(|level| (level, level.parse::<u8>())) {
-        None => 1,
-        Some((_, Ok(level))) if (1..=levels).contains(&level) => level,
-        Some((level, _)) => {
-            let shown = crate::error::excerpt(path);
-            let level = crate::error::excerpt(level);
-            return Err(EnvError::Scenario {
-                why: format!("{shown}#{level}: its levels are 1 to {levels}"),
-            });
-        }
-    };
-    Ok(EnvId { scenario, level })
 }
 
 /// A fingerprint of a text, 16 hexadecimal digits: two texts that differ have two, but for an

@@ -1,19 +1,16 @@
 //! Reads the document of a setting into a [`Plan`].
 
-use super::fields::{Fields, number, own_name, texts, wholes};
+use super::fields::{Fields, own_name, texts, wholes};
 use super::mistakes::{Mistakes, excerpt, unknown};
 use super::model::{
-    Facing, Height, Light, MOST_LIGHTS, MOST_SPAWNS, MOST_WHENS, MOST_ZONES, MapPlan, Names, Place,
-    Plan, PlayerPlan, Term, Zone,
+    Facing, Light, MOST_LIGHTS, MOST_SPAWNS, MOST_WHENS, MOST_ZONES, MapPlan, Names, Plan,
+    PlayerPlan, Zone,
 };
+use super::read_parts::{FARTHEST, height, place, term, zone};
 use super::tree::{Node, Value};
 use super::{read_map, read_spawns, read_whens};
-use crate::scenarios::common::outcome::MOST_TERMS;
 use crate::spaces::action::BUTTONS;
 use hasard_engine::world::ActorKind;
-
-/// Farthest from the origin that anything lies, map units.
-pub(super) const FARTHEST: i64 = 16_000;
 
 /// The sections of a file.
 const SECTIONS: [&str; 13] = [
@@ -185,53 +182,6 @@ fn zones(node: &Node, mistakes: &mut Mistakes) -> Vec<Zone> {
     zones
 }
 
-/// The number of a zone.
-pub(super) fn zone(name: &str, at: usize, zones: &[Zone], mistakes: &mut Mistakes) -> Option<u8> {
-    let found = zones.iter().position(|zone| zone.name == name);
-    if found.is_none() {
-        mistakes.add(at, unknown("zone", name, zones.iter().map(|zone| &*zone.name)));
-    }
-    found.map(|index| index as u8)
-}
-
-/// A place: `free`, a zone, or a rectangle.
-pub(super) fn place(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Option<Place> {
-    match &node.value {
-        Value::Text(text) if text == "free" => Some(Place::Free),
-        Value::Text(text) => zone(text, node.at, zones, mistakes).map(Place::Zone),
-        _ => {
-            let area = wholes::<4>(
-                node,
-                "a place, if it is neither \"free\" nor a zone,",
-                -FARTHEST,
-                FARTHEST,
-                mistakes,
-            )?;
-            let [west, south, east, north] = area;
-            if west >= east || south >= north {
-                mistakes.add(node.at, "a rectangle is [west, south, east, north], west below east and south below north");
-                return None;
-            }
-            Some(Place::Area(area))
-        }
-    }
-}
-
-/// The heights of a thing: above its floor, or absolute.
-pub(super) fn height(fields: &mut Fields<'_>, mistakes: &mut Mistakes) -> Height {
-    let above = fields.whole("height", 0, 1024, mistakes);
-    let absolute = fields.whole("z", -FARTHEST, FARTHEST, mistakes);
-    match (above, absolute) {
-        (Some(_), Some(_)) => {
-            mistakes
-                .add(fields.at, "`height` is above the floor and `z` absolute: write one of them");
-            Height::Above(0)
-        }
-        (_, Some(z)) => Height::At(z as i32),
-        (above, None) => Height::Above(above.unwrap_or(0) as i32),
-    }
-}
-
 fn terms(node: &Node, names: &mut Names, mistakes: &mut Mistakes) {
     let Value::Table(entries) = &node.value else {
         mistakes.add(node.at, "[costs] must be a table of cost terms");
@@ -245,27 +195,6 @@ fn terms(node: &Node, names: &mut Names, mistakes: &mut Mistakes) {
             names.terms[usize::from(index)].counted = counted;
         }
     }
-}
-
-/// The number of a cost term, which may be new.
-pub(super) fn term(
-    name: &str,
-    at: usize,
-    names: &mut Names,
-    mistakes: &mut Mistakes,
-) -> Option<u8> {
-    if let Some(index) = names.terms.iter().position(|known| known.name == name) {
-        return Some(index as u8);
-    }
-    if !own_name(name, at, "cost term", mistakes) {
-        return None;
-    }
-    if names.terms.len() == MOST_TERMS {
-        mistakes.add(at, format!("at most {MOST_TERMS} cost terms"));
-        return None;
-    }
-    names.terms.push(Term { name: name.to_string(), counted: true });
-    Some((names.terms.len() - 1) as u8)
 }
 
 fn player(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> PlayerPlan {
@@ -345,13 +274,4 @@ fn light(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Option<Light> 
     let off = fields.flag("off", mistakes);
     fields.finish(mistakes);
     zone.filter(|_| !off).map(|zone| Light { zone, bright, dark, bright_tics, dark_tics, glow })
-}
-
-/// A number or none.
-pub(super) fn amount(node: &Node, key: &str, mistakes: &mut Mistakes) -> Option<f64> {
-    let found = number(node).filter(|number| number.abs() <= 1e9);
-    if found.is_none() {
-        mistakes.add(node.at, format!("{key} must be a number from -1e9 to 1e9"));
-    }
-    found
 }

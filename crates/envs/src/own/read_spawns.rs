@@ -3,8 +3,8 @@
 use super::fields::{Fields, own_name};
 use super::mistakes::Mistakes;
 use super::model::{Goal, Place, Spawn, Zone};
-use super::read::{height, place, zone};
 use super::read_map::actor;
+use super::read_parts::{height, place, zone};
 use super::tree::{Node, Value};
 use hasard_engine::world::{ActorFlags, ActorKind};
 

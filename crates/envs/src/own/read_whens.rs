@@ -5,7 +5,7 @@
 use super::fields::{Fields, own_name};
 use super::mistakes::{Mistakes, unknown};
 use super::model::{MOST_COUNTERS, Names, Of, Place, Spawn, Trigger, When, Zone};
-use super::read::{amount, place, term, zone};
+use super::read_parts::{amount, place, term, zone};
 use super::tree::{Node, Value};
 use hasard_engine::world::{ActorKind, DamageKind};
 

@@ -3,13 +3,14 @@
 //! Long because it is the one interpreter of all that a file can say.
 
 use super::model::{Of, Trigger, When};
+use super::placing::move_player;
 use super::program::{Happening, Program};
-use super::walkers::Walker;
+use super::walkers::{self, Walker};
 use crate::scenarios::Rules;
 use crate::scenarios::common::outcome::Outcome;
 use crate::scenarios::common::stage;
 use hasard_engine::math::Fixed;
-use hasard_engine::world::{ActorFlags, ActorId, ActorKind, Buttons, Event, World};
+use hasard_engine::world::{ActorFlags, ActorKind, Buttons, Event, World};
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
@@ -184,13 +185,7 @@ impl OwnRules {
             }
         }
         if let Some(place) = when.teleport {
-            super::opening::move_player(
-                program,
-                place,
-                super::model::Height::Above(0),
-                &mut self.tries,
-                world,
-            );
+            move_player(program, place, super::model::Height::Above(0), &mut self.tries, world);
             self.look_around(program, world, outcome);
         }
     }
@@ -452,7 +447,7 @@ impl Rules for OwnRules {
         self.read_clock(&program, world, outcome);
         self.follow_changes(&program, world, outcome);
         if program.walkers {
-            self.lead_walkers(&program, world);
+            walkers::lead(&mut self.walkers, &program, world);
         }
     }
 
@@ -470,9 +465,4 @@ impl Rules for OwnRules {
         stats.extend(counted.map(|(name, count)| (*name, f64::from(*count))));
         stats.push(("health", f64::from(stage::health(world).max(0))));
     }
-}
-
-/// The agent's body.
-pub(super) fn body(world: &World) -> ActorId {
-    world.players[0].actor
 }

@@ -1,9 +1,8 @@
 //! Monsters on their way: to random places, after the agent, or from zone to zone.
 
 use super::model::{Goal, Height, Place};
-use super::opening::drawn_place;
+use super::placing::{body, drawn_place};
 use super::program::Program;
-use super::rules::{OwnRules, body};
 use hasard_engine::world::{ActorId, ActorKind, World};
 
 /// Tics between two looks at a monster.
@@ -24,33 +23,29 @@ pub(super) struct Walker {
     until: u32,
 }
 
-impl OwnRules {
-    /// A new monster will set out.
-    pub(super) fn set_out(&mut self, who: ActorId, spawn: u8) {
-        self.walkers.push(Walker { who, spawn, point: None, stage: 0, until: 0 });
+/// Sends those on who have arrived or given up, and forgets the dead.
+pub(super) fn lead(walkers: &mut Vec<Walker>, program: &Program, world: &mut World) {
+    if !world.tic.is_multiple_of(LOOK_TICS) {
+        return;
     }
-
-    /// Sends those on who have arrived or given up, and forgets the dead.
-    pub(super) fn lead_walkers(&mut self, program: &Program, world: &mut World) {
-        if !world.tic.is_multiple_of(LOOK_TICS) {
-            return;
+    walkers.retain_mut(|walker| {
+        let Some(actor) = world.get(walker.who).filter(|actor| actor.health > 0) else {
+            walker.point.into_iter().for_each(|point| world.remove(point));
+            return false;
+        };
+        if actor.goal.is_none() || world.tic >= walker.until {
+            walker.choose(program, world);
         }
-        let mut walkers = std::mem::take(&mut self.walkers);
-        walkers.retain_mut(|walker| {
-            let Some(actor) = world.get(walker.who).filter(|actor| actor.health > 0) else {
-                walker.point.into_iter().for_each(|point| world.remove(point));
-                return false;
-            };
-            if actor.goal.is_none() || world.tic >= walker.until {
-                walker.choose(program, world);
-            }
-            true
-        });
-        self.walkers = walkers;
-    }
+        true
+    });
 }
 
 impl Walker {
+    /// A new monster, which will set out.
+    pub(super) fn new(who: ActorId, spawn: u8) -> Walker {
+        Walker { who, spawn, point: None, stage: 0, until: 0 }
+    }
+
     /// Sets out for the next goal.
     fn choose(&mut self, program: &Program, world: &mut World) {
         let place = match &program.plan.spawns[usize::from(self.spawn)].goal {

@@ -1,40 +1,22 @@
 //! What is wrong with what a batch of worlds is given, told before any world moves.
 
-use super::job::Chosen;
-use super::{LaneState, Restart, VecEnv};
-use crate::{Batch, EnvError, Environment};
+use super::chosen::{Chosen, Restart};
+use super::lane_state::LaneState;
+use super::options::VecOptions;
+use crate::{ActionSpace, Batch, CostTerm, EnvError};
 
-/// Whether a lane's environment fits into a batch with the first one's.
-pub(super) fn alike(
-    first: &dyn Environment,
-    env: &dyn Environment,
-    lane: usize,
-) -> Result<(), EnvError> {
-    let unlike = |what| Err(EnvError::Unlike { lane, what });
-    if env.action_space().groups.is_empty() && env.action_space().deltas.is_empty() {
-        unlike("action space (which may not be empty)")
-    } else if env.action_space() != first.action_space() {
-        unlike("action space")
-    } else if env.observation_shape() != first.observation_shape() {
-        unlike("observation shape")
-    } else if env.cost_terms() != first.cost_terms() {
-        unlike("cost terms")
-    } else if env.stat_names() != first.stat_names() {
-        unlike("statistics")
-    } else {
-        Ok(())
-    }
+/// What the lanes of a batch have in common, and how the batch was made.
+pub(super) struct Shape {
+    pub space: ActionSpace,
+    pub observation: [usize; 3],
+    pub cost_terms: &'static [CostTerm],
+    pub statistics: Vec<&'static str>,
+    pub options: VecOptions,
 }
 
-impl VecEnv {
-    /// What is wrong with a group's batch (`group` = [`VecEnv::groups`] for all lanes), if
-    /// anything.
-    pub fn check(&self, group: usize, batch: &Batch) -> Result<(), EnvError> {
-        self.check_lengths(self.group_lanes(group).len(), batch)
-    }
-
+impl Shape {
     pub(super) fn check_lengths(&self, lanes: usize, batch: &Batch) -> Result<(), EnvError> {
-        let pixels: usize = self.observation_shape.iter().product();
+        let pixels: usize = self.observation.iter().product();
         let statistics = if self.options.statistics { self.statistics.len() } else { 0 };
         for (field, given, needed) in [
             ("actions", batch.actions.len(), lanes * self.space.groups.len()),
@@ -116,21 +98,5 @@ impl VecEnv {
         }
         let allowed = format!("less than {}, the number of groups", self.options.groups);
         Err(EnvError::Option { option: "the group", given: group.to_string(), allowed })
-    }
-
-    /// Whether a slot's lanes are free: all lanes together are busy while any group is.
-    pub(super) fn check_turn(&self, slot: usize) -> Result<(), EnvError> {
-        if let Some(message) = &self.failed {
-            return Err(EnvError::Panicked { message: message.clone() });
-        }
-        let whole = self.options.groups;
-        if self.crew.under_way(slot)
-            || (slot == whole && (0..whole).any(|group| self.crew.under_way(group)))
-        {
-            return Err(EnvError::Turn {
-                why: "a group of lanes is under way; receive it first".to_string(),
-            });
-        }
-        Ok(())
     }
 }

@@ -1,9 +1,9 @@
 //! Who steps the lanes: worker threads and the caller that waits for them, or the caller alone.
 
-use super::VecOptions;
 use super::handover::{Lanes, Slot};
 use super::job::{Task, visited};
 use super::lane::{Lane, LaneSlices, Manner, Outbox};
+use super::options::VecOptions;
 use super::worker::{self, Shared};
 use crate::{Batch, EnvError};
 use std::panic::{AssertUnwindSafe, catch_unwind};

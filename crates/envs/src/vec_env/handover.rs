@@ -16,7 +16,8 @@
 //! The safe twin is the batch of worlds without threads, which slices the same buffers by the
 //! borrow checker's rules; tests compare both.
 
-use super::job::{Chosen, Job, Task, visited};
+use super::chosen::Chosen;
+use super::job::{Job, Task, visited};
 use super::lane::{Lane, LaneSlices};
 use crate::Batch;
 use std::cell::UnsafeCell;

@@ -1,6 +1,8 @@
 //! A lane: one environment of a batch, with the seeds of its episodes.
 
-use super::{Autoreset, FinalObservations, LaneState, Restart};
+use super::chosen::Restart;
+use super::lane_state::LaneState;
+use super::options::{Autoreset, FinalObservations};
 use crate::{Batch, Environment, Episode, Happening, Step};
 use hasard_engine::math::Rng;
 

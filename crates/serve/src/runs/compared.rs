@@ -1,8 +1,8 @@
 //! Experiments side by side: inter-quartile means over seeds, with the report's own intervals.
 
-use super::{Chosen, on_catalogue};
+use super::asked::{Chosen, on_catalogue};
 use crate::answer::{aside, json_of};
-use crate::server::Shared;
+use crate::shared::Shared;
 use axum::extract::{Query, State};
 use axum::response::Response;
 use hasard_report::statistics::{aggregate, interquartile_mean};

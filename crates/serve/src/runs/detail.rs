@@ -1,9 +1,10 @@
 //! One run: its settings beside those of its preset, what it is worth, what it reports.
 
+use super::asked::{Chosen, One, directory, on_catalogue};
 use super::metrics::{listed, place};
-use super::{Chosen, One, directory, on_catalogue, read};
 use crate::answer::{aside, json_of};
-use crate::server::Shared;
+use crate::catalogue::files::read;
+use crate::shared::Shared;
 use axum::extract::{Query, State};
 use axum::response::Response;
 use hasard_learn::config::explained::settings as explained;

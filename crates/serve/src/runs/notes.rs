@@ -1,70 +1,27 @@
-//! What people say of a run: a note, tags, whether it is put aside; and runs moved to the trash.
+//! Notes that are written, and runs that are moved to the trash.
 //!
-//! `notes.json` of a run holds it. A run that is thrown away is a folder below `.trash` of the
+//! A run that is thrown away is a folder below `.trash` of the
 //! folder that is served: nothing is ever removed.
 
-use super::catalogue::Stamp;
-use super::{on_catalogue, read};
+use super::asked::on_catalogue;
 use crate::answer::{aside, json_of, refusal};
-use crate::server::Shared;
+use crate::catalogue::Catalogue;
+use crate::catalogue::files::read;
+use crate::catalogue::notes::{FILE, TRASH, Words};
+use crate::shared::Shared;
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use hasard_media::files::write_whole;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The folder of runs that were thrown away.
-pub(super) const TRASH: &str = ".trash";
-const FILE: &str = "notes.json";
 /// Letters of a note, letters of a tag, tags.
 const LONGEST_NOTE: usize = 4000;
 const LONGEST_TAG: usize = 40;
 const MOST_TAGS: usize = 20;
-
-#[derive(Serialize, Deserialize, Default, Clone, PartialEq, Debug)]
-struct Words {
-    #[serde(default)]
-    note: String,
-    #[serde(default)]
-    tags: Vec<String>,
-    #[serde(default)]
-    archived: bool,
-}
-
-/// The notes of a run and the file that they were read from, as it was then.
-pub(super) struct Notes {
-    stamp: Stamp,
-    words: Words,
-}
-
-impl Default for Notes {
-    fn default() -> Notes {
-        Notes { stamp: Stamp::NONE, words: Words::default() }
-    }
-}
-
-impl Notes {
-    /// Reads them again if the file is another; whether it was.
-    pub fn look(&mut self, run: &Path) -> bool {
-        let path = run.join(FILE);
-        let stamp = Stamp::of(&path).unwrap_or(Stamp::NONE);
-        if stamp == self.stamp {
-            return false;
-        }
-        self.stamp = stamp;
-        let words = read(&path).and_then(|text| serde_json::from_str(&text).ok());
-        self.words = words.unwrap_or_default();
-        true
-    }
-
-    /// Nothing where there is nothing to say.
-    pub fn told(&self) -> Value {
-        if self.words == Words::default() { Value::Null } else { json!(self.words) }
-    }
-}
 
 /// What is to become of a run.
 #[derive(Deserialize)]
@@ -132,7 +89,7 @@ pub(crate) async fn edit(
         }
     });
     let done = done.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
-    on_catalogue(shared, super::Catalogue::look_again).await?;
+    on_catalogue(shared, Catalogue::look_again).await?;
     Ok(json_of(&done))
 }
 

@@ -1,10 +1,10 @@
 //! An episode of an agent as a film to keep.
 
+use super::performer::{Performer, performer};
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
-use super::{Performer, performer};
 use crate::answer::{aside, refusal};
-use crate::server::Shared;
+use crate::shared::Shared;
 use axum::extract::{Query, State};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};

@@ -3,7 +3,7 @@
 //! size and rate.
 
 use crate::answer::refusal;
-use crate::server::Shared;
+use crate::shared::Shared;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::http::StatusCode;
 use axum::response::Response;

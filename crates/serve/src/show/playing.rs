@@ -3,7 +3,7 @@
 use super::frame::message;
 use super::line::{Ask, Line};
 use super::query::PlayQuery;
-use crate::server::Shared;
+use crate::shared::Shared;
 use hasard_play::{Controls, Key, Panel, Recorder, Stage, ViewKind, Views, keep_episode};
 use serde_json::json;
 use std::path::PathBuf;

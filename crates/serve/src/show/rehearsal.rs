@@ -2,9 +2,9 @@
 //! it is shown, so that the time line tells of harm to come, and every step can be jumped to by
 //! acting the same again.
 
-use super::Performer;
+use super::performer::Performer;
 use super::query::WatchQuery;
-use crate::server::Shared;
+use crate::shared::Shared;
 use hasard_engine::world::Command;
 use hasard_envs::{ActionSpace, Env, EnvOptions, Move, PolicyRun};
 use hasard_learn::runs::evaluate::{Agent, Choice, Thought};

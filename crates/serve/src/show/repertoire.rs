@@ -1,11 +1,11 @@
 //! An agent's episodes at a glance: those of its run's closing evaluation, or some that are acted
 //! out when they are asked for.
 
+use super::performer::{Performer, performer};
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
-use super::{Performer, performer};
 use crate::answer::{aside, json_of, refusal};
-use crate::server::Shared;
+use crate::shared::Shared;
 use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::response::Response;

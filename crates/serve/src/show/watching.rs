@@ -1,11 +1,11 @@
 //! An episode shown: pause, one tic, speed, jumps to any step.
 
-use super::Performer;
 use super::frame::message;
 use super::line::{Ask, Line};
+use super::performer::Performer;
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
-use crate::server::Shared;
+use crate::shared::Shared;
 use hasard_play::{Moment, Stage, Views};
 use serde_json::json;
 use std::time::{Duration, Instant};

@@ -1,6 +1,6 @@
 //! What a run's selected checkpoint is worth, for the lists and the page of a run.
 
-use super::catalogue::Stamp;
+use super::files::Stamp;
 use hasard_report::run::{Config, Evaluation, Kept, Selected, read_selected};
 use serde_json::{Value, json};
 use std::path::Path;

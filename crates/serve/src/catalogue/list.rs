@@ -2,6 +2,7 @@
 
 use super::columns::Columns;
 use super::evaluated::{self, Stamped};
+use super::files::Stamp;
 use super::notes::{self, Notes};
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
@@ -58,26 +59,6 @@ struct Run {
     alive: bool,
     /// Number of the change that made it what it is.
     change: u64,
-}
-
-/// What tells a file from another that was put in its place.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct Stamp {
-    bytes: u64,
-    modified: SystemTime,
-}
-
-impl Stamp {
-    pub(super) const NONE: Stamp = Stamp { bytes: 0, modified: SystemTime::UNIX_EPOCH };
-
-    /// Of a file that is no link.
-    pub(super) fn of(path: &Path) -> Option<Stamp> {
-        let data = std::fs::symlink_metadata(path).ok().filter(std::fs::Metadata::is_file)?;
-        Some(Stamp {
-            bytes: data.len(),
-            modified: data.modified().unwrap_or(SystemTime::UNIX_EPOCH),
-        })
-    }
 }
 
 /// All runs below some folders.

@@ -1,0 +1,55 @@
+//! What people say of a run: a note, tags, whether it is put aside. `notes.json` of a run holds it.
+
+use super::files::{Stamp, read};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// The folder of runs that were thrown away.
+pub(crate) const TRASH: &str = ".trash";
+
+/// The file of a run that holds them.
+pub(crate) const FILE: &str = "notes.json";
+
+/// What people say of a run.
+#[derive(Serialize, Deserialize, Default, Clone, PartialEq, Debug)]
+pub(crate) struct Words {
+    #[serde(default)]
+    pub note: String,
+    #[serde(default)]
+    pub tags: Vec<String>,
+    #[serde(default)]
+    pub archived: bool,
+}
+
+/// The notes of a run and the file that they were read from, as it was then.
+pub(crate) struct Notes {
+    stamp: Stamp,
+    words: Words,
+}
+
+impl Default for Notes {
+    fn default() -> Notes {
+        Notes { stamp: Stamp::NONE, words: Words::default() }
+    }
+}
+
+impl Notes {
+    /// Reads them again if the file is another; whether it was.
+    pub fn look(&mut self, run: &Path) -> bool {
+        let path = run.join(FILE);
+        let stamp = Stamp::of(&path).unwrap_or(Stamp::NONE);
+        if stamp == self.stamp {
+            return false;
+        }
+        self.stamp = stamp;
+        let words = read(&path).and_then(|text| serde_json::from_str(&text).ok());
+        self.words = words.unwrap_or_default();
+        true
+    }
+
+    /// Nothing where there is nothing to say.
+    pub fn told(&self) -> Value {
+        if self.words == Words::default() { Value::Null } else { json!(self.words) }
+    }
+}

@@ -1,0 +1,129 @@
+//! The list of runs, their curves, heatmaps, maps and report.
+
+use super::asked::{Chosen, One, directory, on_catalogue};
+use crate::answer::{aside, json_of, refusal};
+use crate::catalogue::files::read;
+use crate::shared::Shared;
+use axum::extract::{Query, State};
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use hasard_media::files::Scratch;
+use serde::Deserialize;
+use serde_json::Value;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Columns of a chart page at a time.
+const MAX_COLUMNS: usize = 32;
+
+#[derive(Deserialize)]
+pub(crate) struct Since {
+    /// Changes that the asker has seen.
+    #[serde(default)]
+    since: u64,
+}
+
+/// Every run that changed since.
+pub(crate) async fn list(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<Since>,
+) -> Result<Response, Response> {
+    let listing = on_catalogue(shared, move |catalogue| {
+        catalogue.refresh();
+        catalogue.changed_since(query.since)
+    });
+    Ok(json_of(&listing.await?))
+}
+
+/// One heatmap of a run.
+pub(crate) async fn heatmap(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<One>,
+) -> Result<Response, Response> {
+    let path = directory(&shared, query.id).await?;
+    let line = aside(move || {
+        let text = read(&path.join("heatmaps.jsonl"))?;
+        serde_json::from_str::<Value>(text.lines().nth(query.at)?).ok()
+    });
+    Ok(json_of(
+        &line
+            .await?
+            .ok_or_else(|| refusal(StatusCode::NOT_FOUND, "this run has no such heatmap"))?,
+    ))
+}
+
+/// The map that a heatmap lies over: another one in each lesson of a curriculum.
+pub(crate) async fn automap(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<One>,
+) -> Result<Response, Response> {
+    let folder = directory(&shared, query.id).await?;
+    let picture = aside(move || {
+        let lines = read(&folder.join("heatmaps.jsonl")).unwrap_or_default();
+        let line = lines
+            .lines()
+            .nth(query.at)
+            .and_then(|line| serde_json::from_str::<Value>(line).ok())
+            .unwrap_or(Value::Null);
+        let name = line["automap"].as_str().unwrap_or("automap.png");
+        // A name that leads elsewhere is no name.
+        let plain =
+            Path::new(name).file_name().is_some_and(|file| file == name) && !name.starts_with('.');
+        let file = folder.join(if plain { name } else { "automap.png" });
+        hasard_media::png::read(&file).ok().map(|picture| hasard_media::png::encode(&picture))
+    });
+    let bytes =
+        picture.await?.ok_or_else(|| refusal(StatusCode::NOT_FOUND, "this run has no automap"))?;
+    Ok(([(header::CONTENT_TYPE, "image/png")], bytes).into_response())
+}
+
+/// Columns of some runs, thinned to what a chart can show.
+pub(crate) async fn curves(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<Chosen>,
+) -> Result<Response, Response> {
+    let ids = query.ids()?;
+    let names: Vec<String> =
+        query.columns.split(',').take(MAX_COLUMNS).map(str::to_owned).collect();
+    let body = on_catalogue(shared, move |catalogue| {
+        let curve = |id: &String| Some((id.clone(), catalogue.columns(id)?.thinned(&names)));
+        ids.iter().filter_map(curve).collect::<serde_json::Map<String, Value>>()
+    });
+    Ok(json_of(&Value::Object(body.await?)))
+}
+
+/// The report of some runs, as `hasard report` writes it.
+pub(crate) async fn report(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<Chosen>,
+) -> Result<Response, Response> {
+    let Ok(_place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {
+        return Err(refusal(
+            StatusCode::SERVICE_UNAVAILABLE,
+            "films or reports are in the making; ask again in a moment",
+        ));
+    };
+    let ids = query.ids()?;
+    let paths = on_catalogue(shared, move |catalogue| {
+        ids.iter().filter_map(|id| catalogue.path(id)).collect::<Vec<_>>()
+    })
+    .await?;
+    let page = aside(move || {
+        static NUMBER: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+        let number = NUMBER.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let folder = std::env::temp_dir()
+            .join(format!("hasard-serve-report-{}-{number}", std::process::id()));
+        let folder = Scratch::new(folder);
+        let written = hasard_report::write_report(&paths, folder.path(), "Runs");
+        written.and_then(|written| std::fs::read(written.page).map_err(|error| error.to_string()))
+    });
+    let page = page.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
+    // The report is one page with its pictures and style within; no script of it runs here.
+    let policy =
+        "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'none'";
+    let headers = [
+        (header::CONTENT_TYPE, "text/html; charset=utf-8"),
+        (header::CONTENT_SECURITY_POLICY, policy),
+    ];
+    Ok((headers, page).into_response())
+}
