@@ -69,11 +69,11 @@ impl VideoWriter {
             qp: quality.quantiser(),
             // Stretches that stand alone are cut by `segments`, not by the encoder.
             gop_size: u32::MAX,
-            scenecut: 0,
-            mbtree: false,
             framerate: rate as f32,
             preset: Preset::Balanced,
-            ..EncoderConfig::new(even_width, even_height)
+            // Without arithmetic coding and what goes with it: an eighth more bytes in a quarter of
+            // the time.
+            ..EncoderConfig::baseline(even_width, even_height)
         };
         let refused = |e: String| {
             MediaError::Size(format!("no video of {width}x{height} can be encoded: {e}"))
@@ -153,25 +153,34 @@ impl VideoWriter {
 
 /// Converts a picture (ITU-R BT.601, video range, in 16.16 fixed point).
 fn fill(frame: &mut YuvFrame, picture: &Picture) {
-    let (last_x, last_y) = (picture.width() - 1, picture.height() - 1);
+    let (width, last_y) = (picture.width(), picture.height() - 1);
+    let line = |y: usize| -> &[[u8; 3]] {
+        picture.rgb()[y.min(last_y) * width * 3..][..width * 3].as_chunks().0
+    };
     for (y, row) in frame.y.chunks_exact_mut(frame.width).enumerate() {
-        for (x, luma) in row.iter_mut().enumerate() {
-            let [r, g, b] = picture.get(x.min(last_x), y.min(last_y)).map(i32::from);
+        for (luma, pixel) in row.iter_mut().zip(line(y)) {
+            let [r, g, b] = pixel.map(i32::from);
             *luma = (((16_829 * r + 33_039 * g + 6_416 * b + (1 << 15)) >> 16) + 16) as u8;
         }
+        let last = row[width - 1];
+        row[width..].fill(last);
     }
     let half = frame.width / 2;
-    for (at, (blue, red)) in frame.u.iter_mut().zip(&mut frame.v).enumerate() {
-        let (x, y) = (at % half * 2, at / half * 2);
-        let mut sum = [0i32; 3];
-        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let pixel = picture.get((x + dx).min(last_x), (y + dy).min(last_y));
-            sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += i32::from(value));
+    let rows = frame.u.chunks_exact_mut(half).zip(frame.v.chunks_exact_mut(half));
+    for (y, (blues, reds)) in rows.enumerate() {
+        let (above, below) = (line(2 * y), line(2 * y + 1));
+        for (x, (blue, red)) in blues.iter_mut().zip(reds).enumerate() {
+            let (left, right) = (2 * x, (2 * x + 1).min(width - 1));
+            let [r, g, b] = [0, 1, 2].map(|k| {
+                [above[left], above[right], below[left], below[right]]
+                    .map(|pixel| i32::from(pixel[k]))
+                    .iter()
+                    .sum::<i32>()
+            });
+            // Sums of four pixels: two bits more to shift away.
+            *blue = (((-9_714 * r - 19_070 * g + 28_784 * b + (1 << 17)) >> 18) + 128) as u8;
+            *red = (((28_784 * r - 24_103 * g - 4_681 * b + (1 << 17)) >> 18) + 128) as u8;
         }
-        // Sums of four pixels: two bits more to shift away.
-        let [r, g, b] = sum;
-        *blue = (((-9_714 * r - 19_070 * g + 28_784 * b + (1 << 17)) >> 18) + 128) as u8;
-        *red = (((28_784 * r - 24_103 * g - 4_681 * b + (1 << 17)) >> 18) + 128) as u8;
     }
 }
 

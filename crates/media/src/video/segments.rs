@@ -4,6 +4,7 @@
 use rusty_h264_common::YuvFrame;
 use rusty_h264_encoder::{Encoder, EncoderConfig};
 use std::collections::VecDeque;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
 /// Pictures of a stretch at most: players jump to their beginnings.
@@ -26,8 +27,23 @@ pub(super) type Unit = (Vec<u8>, bool);
 pub(super) struct Segments {
     config: EncoderConfig,
     waiting: Vec<YuvFrame>,
-    at_work: VecDeque<JoinHandle<Result<Vec<Unit>, String>>>,
+    /// Stretches that were begun and not yet given, in order; some may be coded already.
+    begun: VecDeque<JoinHandle<Result<Vec<Unit>, String>>>,
     threads: usize,
+    /// Threads that are coding, and what they say when they end.
+    coding: usize,
+    ends: Receiver<()>,
+    end: Sender<()>,
+}
+
+/// Says that a thread has ended, also if by a panic.
+struct Ends(Sender<()>);
+
+impl Drop for Ends {
+    fn drop(&mut self) {
+        // Nobody listens any more when the film was given up.
+        let _ = self.0.send(());
+    }
 }
 
 impl Segments {
@@ -35,7 +51,16 @@ impl Segments {
     pub fn new(config: EncoderConfig) -> Result<Segments, String> {
         Encoder::new(config.clone()).map_err(|error| error.to_string())?;
         let threads = std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS);
-        Ok(Segments { config, waiting: Vec::new(), at_work: VecDeque::new(), threads })
+        let (end, ends) = channel();
+        Ok(Segments {
+            config,
+            waiting: Vec::new(),
+            begun: VecDeque::new(),
+            threads,
+            coding: 0,
+            ends,
+            end,
+        })
     }
 
     /// Takes the next picture, and gives what has been coded meanwhile, in order.
@@ -51,28 +76,33 @@ impl Segments {
     /// Ends the last stretch, and gives all that is left.
     pub fn finish(&mut self) -> Result<Vec<Unit>, String> {
         let mut coded = self.begin()?;
-        while let Some(oldest) = self.at_work.pop_front() {
+        while let Some(oldest) = self.begun.pop_front() {
             coded.extend(ended(oldest)?);
         }
         Ok(coded)
     }
 
-    /// Gives the waiting stretch to a thread; with as many at work as there are cores, waits for
-    /// the oldest.
+    /// Gives the waiting stretch to a thread, after one has ended where as many code as there are
+    /// cores. Gives those that are coded, up to the first that is not.
     fn begin(&mut self) -> Result<Vec<Unit>, String> {
         let frames = std::mem::take(&mut self.waiting);
         if frames.is_empty() {
             return Ok(Vec::new());
         }
-        let coded = if self.at_work.len() >= self.threads {
-            self.at_work.pop_front().map_or(Ok(Vec::new()), ended)?
-        } else {
-            Vec::new()
-        };
-        let config = self.config.clone();
-        let begun =
-            std::thread::Builder::new().name("film".into()).spawn(move || code(config, &frames));
-        self.at_work.push_back(begun.map_err(|error| error.to_string())?);
+        while self.coding >= self.threads && self.ends.recv().is_ok() {
+            self.coding -= 1;
+        }
+        let (config, end) = (self.config.clone(), Ends(self.end.clone()));
+        let thread = std::thread::Builder::new().name("film".into()).spawn(move || {
+            let _end = end;
+            code(config, &frames)
+        });
+        self.begun.push_back(thread.map_err(|error| error.to_string())?);
+        self.coding += 1;
+        let mut coded = Vec::new();
+        while let Some(oldest) = self.begun.pop_front_if(|oldest| oldest.is_finished()) {
+            coded.extend(ended(oldest)?);
+        }
         Ok(coded)
     }
 }
