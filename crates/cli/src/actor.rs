@@ -67,7 +67,14 @@ impl Performance {
         let config = run_config(run).map_err(Failure::bad)?;
         let options =
             settings::trained_options(&config.env, pictures_kept(elsewhere, &config.env))?;
-        Performance::of_agent(&config.env.id, run, &options, looks, seed)
+        let id = settings::first_task(&config.env);
+        if config.env.is_mixed() {
+            let run = hasard_media::shell::quote(run);
+            note!(
+                "hasard: {run}: was trained on several tasks, of which this shows {id}; another: hasard record ENV --policy run:{run}"
+            );
+        }
+        Performance::of_agent(&id, run, &options, looks, seed)
     }
 
     fn of_agent(
@@ -169,7 +176,7 @@ pub fn agent_options(
     elsewhere: Elsewhere<'_>,
 ) -> Result<EnvOptions, Failure> {
     let env = run_config(run).map_err(Failure::bad)?.env;
-    if scenario_of(&env.id) != scenario_of(id) {
+    if env.tasks().iter().all(|task| scenario_of(&task.id) != scenario_of(id)) {
         note!("hasard: {}: was trained in {}, not in {id}", run.display(), env.id);
     }
     let trained = settings::trained_options(&env, pictures_kept(elsewhere, &env))?;

@@ -11,6 +11,10 @@ const SIDE: usize = 720;
 
 /// Draws those of a run's lessons that its directory lacks.
 pub fn keep(config: &TrainConfig, options: &EnvOptions, directory: &Path) -> Result<(), Failure> {
+    // The places of different maps have no map together.
+    if config.env.is_mixed() {
+        return Ok(());
+    }
     for lesson in 0..config.lessons() {
         let path = directory.join(config.automap(lesson));
         if path.exists() {

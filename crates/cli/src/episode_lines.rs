@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Outcome};
 use hasard_envs::{EnvOptions, Episode};
 use hasard_learn::config::Constraint;
-use hasard_learn::runs::evaluate::{Evaluation, Judgement};
+use hasard_learn::runs::evaluate::{Evaluation, Judgement, TaskEvaluation};
 use hasard_learn::statistics::{Estimate, Tails};
 use serde_json::{Map, Value, json};
 use std::io::Write;
@@ -33,11 +33,11 @@ impl EpisodeLines {
         self.rules = Some((options.rules.name(), options.hard));
     }
 
-    /// Prints one episode.
+    /// Prints one episode; of several tasks, with the one that it is of.
     pub fn episode(&mut self, env: &str, number: u64, episode: Episode) -> Outcome {
         let mut out = std::io::stdout().lock();
         if self.json {
-            let mut row = episode_row(env, number, &episode);
+            let mut row = episode_row(episode.task.unwrap_or(env), number, &episode);
             if let Some((rules, hard)) = self.rules {
                 row["rules"] = json!(rules);
                 row["hard"] = json!(hard);
@@ -59,7 +59,11 @@ impl EpisodeLines {
             };
             let (seed, value, cost, length) =
                 (episode.seed, episode.episode_return, episode.cost, episode.length);
-            writeln!(out, "{number:>7} {seed:>12} {value:>10.3} {cost:>10.3} {length:>7}  {end}")?;
+            let task = episode.task.map_or(String::new(), |task| format!("  {task}"));
+            writeln!(
+                out,
+                "{number:>7} {seed:>12} {value:>10.3} {cost:>10.3} {length:>7}  {end}{task}"
+            )?;
         }
         self.episodes.push(episode);
         Ok(())
@@ -98,6 +102,20 @@ impl EpisodeLines {
             all.length.mean
         )?;
         writeln!(out, "cost of an episode: {}", tails_text(&all.tails, None))?;
+        for one in &all.tasks {
+            let (returns, cost) = (&one.episode_return, &one.cost);
+            writeln!(
+                out,
+                "{}: return {:.3} +- {:.3}, cost {:.3} +- {:.3}, length {:.1}, {} episodes",
+                one.task,
+                returns.mean,
+                returns.half_width,
+                cost.mean,
+                cost.half_width,
+                one.length.mean,
+                one.episodes
+            )?;
+        }
         for one in &all.constraints {
             writeln!(
                 out,
@@ -121,14 +139,19 @@ impl EpisodeLines {
 
 /// Mean of each statistic that the scenario counts.
 fn mean_stats(episodes: &[Episode]) -> Value {
-    let names = episodes.first().map_or(&[][..], |first| &first.stats);
+    let mut names: Vec<&'static str> = Vec::new();
+    for (name, _) in episodes.iter().flat_map(|one| &one.stats) {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
     let mean = |name: &str| {
         let values = episodes.iter().flat_map(|one| &one.stats).filter(|(own, _)| *own == name);
         let (count, sum) =
             values.fold((0.0, 0.0), |(count, sum), (_, value)| (count + 1.0, sum + value));
         sum / count
     };
-    named(names.iter().map(|&(name, _)| (name, mean(name))))
+    named(names.into_iter().map(|name| (name, mean(name))))
 }
 
 /// By what an interval is: Student's t, or the bootstrap where episodes are skewed.
@@ -177,7 +200,7 @@ pub fn episode_row(env: &str, number: u64, episode: &Episode) -> Value {
 /// Means of episodes and their 95 % confidence half-widths as JSON.
 pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
     let constraints: Vec<Value> = all.constraints.iter().map(judgement).collect();
-    json!({ "summary": {
+    let mut row = json!({ "summary": {
         "episodes": all.episodes,
         "return_mean": all.episode_return.mean, "return_ci95": all.episode_return.half_width,
         "cost_mean": all.cost.mean, "cost_ci95": all.cost.half_width,
@@ -188,7 +211,19 @@ pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
         "safety_budget": all.constraints.first().map(|one| one.budget),
         "within_budget": (!all.constraints.is_empty()).then(|| all.within()),
         "constraints": constraints,
-    }})
+    }});
+    if !all.tasks.is_empty() {
+        let task = |one: &TaskEvaluation| {
+            json!({
+                "task": one.task, "episodes": one.episodes,
+                "return_mean": one.episode_return.mean, "return_ci95": one.episode_return.half_width,
+                "cost_mean": one.cost.mean, "cost_ci95": one.cost.half_width,
+                "length_mean": one.length.mean,
+            })
+        };
+        row["summary"]["tasks"] = all.tasks.iter().map(task).collect();
+    }
+    row
 }
 
 /// Return and costs with their half-widths, each constraint beside its budget, for people.

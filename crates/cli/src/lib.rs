@@ -28,7 +28,7 @@ mod zoo;
 use args::{Cli, Command};
 use clap::{ArgMatches, FromArgMatches};
 use failure::Failure;
-use hasard_envs::{EnvOptions, VecEnv};
+use hasard_envs::EnvOptions;
 use hasard_learn::config::EnvConfig;
 use hasard_learn::runs::agent::{Choice, TrainedPolicy};
 use hasard_learn::runs::evaluate::{Evaluation, play};
@@ -127,7 +127,7 @@ pub fn follow(team: Team, warn: &mut dyn FnMut(String)) -> Result<(), String> {
     let options = settings::trained_options(&invitation.config.env, Elsewhere::default())
         .map_err(Failure::line)?;
     invitation
-        .follow(&|env, worlds| VecEnv::new(&env.id, &options, worlds), warn)
+        .follow(&|env, worlds| env.worlds(&options, worlds), warn)
         .map_err(|error| error.to_string())
 }
 
@@ -153,15 +153,17 @@ pub fn evaluate(
 ) -> Result<Vec<Value>, Option<String>> {
     let threads = settings::cores();
     let (config, mut rows, mut all) = (policy.config(), Vec::new(), Vec::new());
-    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, options, worlds);
-    for some in seeds.chunks(8 * threads) {
+    let make = |env: &EnvConfig, worlds| env.worlds(options, worlds);
+    let tasks = config.env.tasks().len();
+    for some in seeds.chunks((8 * threads).next_multiple_of(tasks)) {
         if interrupted() {
             return Err(None);
         }
         for episode in
             play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))?
         {
-            rows.push(episode_lines::episode_row(&config.env.id, all.len() as u64, &episode));
+            let id = episode.task.unwrap_or(&config.env.id);
+            rows.push(episode_lines::episode_row(id, all.len() as u64, &episode));
             all.push(episode);
         }
     }
@@ -171,7 +173,8 @@ pub fn evaluate(
     Ok(rows)
 }
 
-/// The environment's id and options of the run in a directory, as its agent sees them.
+/// The environment's id and options of the run in a directory, as its agent sees them; of several
+/// tasks the first.
 ///
 /// # Errors
 /// One line that names the file and the remedy.
@@ -179,7 +182,7 @@ pub fn environment_of_run(directory: &Path) -> Result<(String, EnvOptions), Stri
     let config = hasard_learn::runs::evaluate::run_config(directory)
         .map_err(|error| Failure::bad(error).line())?;
     Ok((
-        config.env.id.clone(),
+        settings::first_task(&config.env),
         settings::trained_options(&config.env, Elsewhere::default()).map_err(Failure::line)?,
     ))
 }

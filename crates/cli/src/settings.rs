@@ -96,6 +96,11 @@ pub fn views(first: View, beside: &[View]) -> Vec<ViewKind> {
     std::iter::once(first).chain(beside.iter().copied()).map(ViewKind::from).collect()
 }
 
+/// The id of a run's environment; of several tasks the first.
+pub fn first_task(env: &EnvConfig) -> String {
+    env.id.split(',').next().unwrap_or_default().to_string()
+}
+
 /// Where the maps and the pictures of a run are now, if elsewhere than its settings say.
 #[derive(Clone, Copy, Default)]
 pub struct Elsewhere<'a> {
@@ -144,15 +149,19 @@ pub fn cores() -> usize {
 /// The options of the environment that a run was trained in, its maps and pictures among them.
 pub fn trained_options(env: &EnvConfig, elsewhere: Elsewhere<'_>) -> Result<EnvOptions, Failure> {
     let options = env.options().map_err(Failure::bad)?;
-    if let Some(changed) = env.scenario_file.and_then(|own| own.changed()) {
-        note!("hasard: {changed}");
+    for file in env.scenario_file.iter().chain(&env.scenario_files) {
+        if let Some(changed) = file.changed() {
+            note!("hasard: {changed}");
+        }
     }
     let maps = place(env.maps.as_deref(), elsewhere.maps, "--maps")?;
     let iwad = place(env.iwad.as_deref(), elsewhere.iwad, "--iwad")?;
     let sources = crate::sources::looks(maps, iwad)?;
     // A map that cannot be read stops a run before it is announced.
-    if let (Some(maps), Ok(id)) = (&sources.maps, EnvId::within(options.scenario, &env.id)) {
-        maps.level(id, options.rules, options.hard).map_err(Failure::bad)?;
+    if let Some(maps) = &sources.maps {
+        for id in env.tasks().iter().filter_map(|task| task.env_id().ok()) {
+            maps.level(id, options.rules, options.hard).map_err(Failure::bad)?;
+        }
     }
     Ok(EnvOptions { maps: sources.maps, assets: sources.assets, ..options })
 }

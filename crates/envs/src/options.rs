@@ -4,6 +4,7 @@ use crate::error::EnvError;
 use crate::maps::folder::Maps;
 use crate::registry::scenario::Scenario;
 use crate::scenarios::common::rule_set::RuleSet;
+use crate::spaces::action::ActionSpace;
 use hasard_engine::render::FrameSize;
 
 /// What the learner sees.
@@ -51,6 +52,10 @@ pub struct EnvOptions {
     /// Whose action space, by rules and hard constraint, if another than the world's own: an agent
     /// keeps the buttons that it was trained with.
     pub actions_of: Option<(RuleSet, bool)>,
+    /// The space that several tasks have together ([`ActionSpace::together`]), for an agent that was
+    /// trained on them: a button that this environment does not have does nothing in it. `None` for
+    /// its own space.
+    pub together: Option<ActionSpace>,
     /// Tics that each action is held; 1..=35.
     pub frame_skip: u32,
     /// Policy steps after which an episode is cut off, where that is sooner than its scenario's
@@ -91,6 +96,7 @@ impl Default for EnvOptions {
             hard: false,
             full_actions: false,
             actions_of: None,
+            together: None,
             frame_skip: 4,
             max_episode_steps: None,
             size: FrameSize::CLASSIC,

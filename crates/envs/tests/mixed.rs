@@ -112,7 +112,11 @@ fn beside_plain_batches(full: bool, steps: usize) {
             for (place, term) in mixed.cost_terms().iter().enumerate() {
                 let told = batch.cost_terms[lane * mixed.cost_terms().len() + place];
                 let own = terms.iter().position(|one| one == term);
-                let alone = own.map_or(0.0, |at| batches[task].cost_terms[lane * terms.len() + at]);
+                let alone = match own {
+                    Some(at) => batches[task].cost_terms[lane * terms.len() + at],
+                    None if term.name == IDS[task] => batches[task].costs[lane],
+                    None => 0.0,
+                };
                 assert_eq!(told, alone, "step {step}, lane {lane}, {}", term.name);
             }
             let names = plain[task].statistics();
@@ -130,12 +134,11 @@ fn beside_plain_batches(full: bool, steps: usize) {
                 (episode.seed, episode.episode_return, episode.cost, episode.length),
                 (alone.seed, alone.episode_return, alone.cost, alone.length)
             );
-            for cost in &alone.costs {
-                assert!(episode.costs.contains(cost));
-            }
-            for stat in &alone.stats {
-                assert!(episode.stats.contains(stat), "{stat:?}");
-            }
+            // Its own terms, the whole cost under the task's id, and no other's.
+            let (whole, own) = episode.costs.split_last().unwrap();
+            assert_eq!((own, &episode.stats), (&alone.costs[..], &alone.stats));
+            assert_eq!((whole.name, whole.counted, whole.cost), (IDS[task], false, alone.cost));
+            assert_eq!(episode.task, Some(IDS[task]));
         }
     }
     assert!(brought.iter().flatten().all(|sum| *sum != 0.0), "all earn and cost: {brought:?}");

@@ -1,7 +1,7 @@
 //! Episodes into files and back.
 
 use crate::{PlayError, Stage};
-use hasard_envs::{Env, EnvId, EnvOptions, RuleSet, own};
+use hasard_envs::{ActionSpace, Env, EnvId, EnvOptions, RuleSet, own};
 use hasard_media::MediaError;
 use hasard_media::episode::{EpisodeFile, Header, Outcome, SCENARIO};
 use std::collections::BTreeMap;
@@ -30,6 +30,7 @@ pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
     let actions = actions.map(|(rules, hard)| {
         ("actions-of", format!("{rules} {}", if hard { "hard" } else { "soft" }))
     });
+    let together = options.together.as_ref().map(|space| ("together", space.names()));
     // An own scenario goes with the file that it is told in.
     let own = options.scenario.and_then(|scenario| scenario.file);
     let own = own
@@ -40,6 +41,7 @@ pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
         .chain(own)
         .chain(early)
         .chain(actions)
+        .chain(together)
         .chain(maps)
         .map(|(name, value)| (name.to_owned(), value))
         .collect()
@@ -62,6 +64,7 @@ pub fn options_from_names(
         hard: plain.hard,
         full_actions: plain.full_actions,
         actions_of: None,
+        together: None,
         frame_skip: plain.frame_skip,
         frame_stack: 1,
         ..looks.clone()
@@ -99,6 +102,9 @@ pub fn options_from_names(
                     .ok_or_else(unknown)?
                     == 1;
                 options.actions_of = Some((rules.parse().map_err(|_| unknown())?, hard));
+            }
+            "together" => {
+                options.together = Some(ActionSpace::named(value).ok_or_else(unknown)?);
             }
             "maps" if value == FROM_FILES => {}
             SCENARIO | SCENARIO_PATH => {}

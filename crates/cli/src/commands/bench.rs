@@ -4,7 +4,7 @@ use crate::args::{BenchArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_engine::simd::Simd;
-use hasard_envs::{ObservationKind, VecEnv, bench};
+use hasard_envs::{ObservationKind, bench};
 use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::measure::{Measurement, measure};
 use serde_json::json;
@@ -87,7 +87,7 @@ fn learn(args: &BenchArgs) -> Outcome {
         config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     config.check().map_err(Failure::bad)?;
     let options = settings::trained_options(&config.env, args.env_args.elsewhere())?;
-    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
+    let make = |env: &EnvConfig, worlds| env.worlds(&options, worlds);
     let families: Vec<Simd> = match Simd::forced().map_err(Failure::bad)? {
         _ if args.portable => vec![Simd::PLAIN],
         Some(forced) => vec![forced],

@@ -13,6 +13,7 @@ use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config};
 use hasard_learn::runs::calibration::{calibrate, predictions};
 use hasard_learn::runs::evaluate::{Trace, play_traced};
+use hasard_learn::runs::session::MakeWorlds;
 use hasard_play::Film;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -20,7 +21,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Episodes that are played before they are printed.
-const AT_ONCE: u32 = 64;
+const AT_ONCE: usize = 64;
 
 /// Runs the command.
 pub fn run(args: &EvalArgs) -> Outcome {
@@ -50,10 +51,9 @@ pub fn run(args: &EvalArgs) -> Outcome {
         which: if args.latest { Which::Latest } else { Which::Selected },
         choice: if args.greedy { Choice::Greedy } else { Choice::Sampled },
     };
-    let id = &config.env.id;
     let mut traces = Vec::new();
     if args.calibration.is_some() {
-        let policy = player.policy(&Env::new(id, &options).map_err(Failure::bad)?)?;
+        let policy = player.policy(&first_env(&config, &options)?)?;
         if policy.cost_units().is_empty() {
             return Err(Failure::bad(format!(
                 "--calibration: {}: has no critics of costs whose units are known and that see no more than an agent at work; give \
@@ -62,7 +62,9 @@ pub fn run(args: &EvalArgs) -> Outcome {
             )));
         }
     }
-    player.play_traced(id, &options, args.episodes, args.seed, &mut lines, &mut |trace| {
+    let make = |_: &_, worlds| config.env.worlds(&options, worlds);
+    let (env, numbers) = (first_env(&config, &options)?, (args.episodes, args.seed));
+    player.play_traced(&env, &make, &config.env.id, numbers, &mut lines, &mut |trace| {
         if args.calibration.is_some() {
             traces.push(trace);
         }
@@ -96,15 +98,16 @@ pub fn run(args: &EvalArgs) -> Outcome {
 /// Puts a run's environment under another rule set. A budget that its own rules had by default
 /// becomes that of these; one that was asked for stays. Gives whose buttons the agent keeps.
 fn play_under(config: &mut TrainConfig, rules: RuleSet) -> Result<(RuleSet, bool), Failure> {
-    let id = config.env.env_id().map_err(Failure::bad)?;
     let own = config.env.options().map_err(Failure::bad)?;
-    let before = id.safety_budget(own.rules, own.hard);
-    config.env.rules = rules.name().into();
-    for constraint in &mut config.constraints {
-        if constraint.term.is_none() && constraint.budget == before {
-            constraint.budget = id.safety_budget(rules, own.hard);
-        }
+    for task in config.env.tasks() {
+        let id = task.env_id().map_err(Failure::bad)?;
+        let (before, now) =
+            (id.safety_budget(own.rules, own.hard), id.safety_budget(rules, own.hard));
+        let on = config.env.is_mixed().then_some(task.id);
+        let usual = config.constraints.iter_mut().filter(|one| one.term == on);
+        usual.filter(|one| one.budget == before).for_each(|one| one.budget = now);
     }
+    config.env.rules = rules.name().into();
     Ok((own.rules, own.hard))
 }
 
@@ -115,10 +118,12 @@ fn worst_of(
     count: usize,
 ) -> Result<Vec<Episode>, Failure> {
     let cost = |episode: &Episode| {
-        constraint.map_or(Ok(episode.cost), |one| one.cost_of(episode)).map_err(Failure::bad)
+        constraint.map_or(Ok(Some(episode.cost)), |one| one.cost_of(episode)).map_err(Failure::bad)
     };
-    let mut all: Vec<(f64, &Episode)> =
-        episodes.iter().map(|one| Ok((cost(one)?, one))).collect::<Result<_, Failure>>()?;
+    let mut all: Vec<(f64, &Episode)> = Vec::new();
+    for one in episodes {
+        all.extend(cost(one)?.map(|cost| (cost, one)));
+    }
     // Of equal cost, the earlier comes first.
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     Ok(all.into_iter().take(count).map(|(_, episode)| episode.clone()).collect())
@@ -134,14 +139,22 @@ fn film_worst(
 ) -> Result<Vec<u64>, Failure> {
     let size = if is_gif(out) { GIF_SIZE } else { Size { width: 320, height: 240 } };
     let looks = EnvOptions { size: size.into(), ..options.clone() };
-    let first = worst.first().map_or(0, |episode| episode.seed);
-    let mut performance = Performance::of_player(player, &config.env.id, options, &looks, first)?;
+    let id_of = |episode: &Episode| episode.task.unwrap_or(&config.env.id).to_string();
+    let Some(first) = worst.first() else { return Ok(Vec::new()) };
+    let perform = |episode: &Episode| {
+        Performance::of_player(player, &id_of(episode), options, &looks, episode.seed)
+    };
+    let mut performance = perform(first)?;
     let every = if is_gif(out) { 5 } else { 1 };
     let views = crate::settings::views(View::Rgb, &[]);
     let mut film =
         Film::begin(&performance.stage, out, looks.size, &views, every).map_err(Failure::bad)?;
     for episode in worst {
-        performance.restart(episode.seed);
+        if performance.stage.env().id().to_string() == id_of(episode) {
+            performance.restart(episode.seed);
+        } else {
+            performance = perform(episode)?;
+        }
         while !performance.stage.ended() {
             performance.tic(None)?;
             film.tic(&performance.stage).map_err(Failure::bad)?;
@@ -197,6 +210,11 @@ fn print_calibration(all: &Value) -> Outcome {
     Ok(())
 }
 
+/// A world of the task, or of the first of several.
+fn first_env(config: &TrainConfig, options: &EnvOptions) -> Result<Env, Failure> {
+    Env::new(&crate::settings::first_task(&config.env), options).map_err(Failure::bad)
+}
+
 /// Which agent acts, and how.
 pub struct Player<'a> {
     /// Its run directory, or its file.
@@ -221,7 +239,8 @@ impl Player<'_> {
         Ok(self.policy(env)?.agent(self.choice, 1))
     }
 
-    /// Plays episodes seeded `seed`, `seed + 1`, ... on all cores and prints them in order.
+    /// Plays episodes seeded `seed`, `seed + 1`, ... in one environment, on all cores, and prints
+    /// them in order.
     pub fn play(
         &self,
         id: &str,
@@ -230,31 +249,34 @@ impl Player<'_> {
         seed: u64,
         lines: &mut EpisodeLines,
     ) -> Outcome {
-        self.play_traced(id, options, episodes, seed, lines, &mut |_| {})
+        let env = Env::new(id, options).map_err(Failure::bad)?;
+        let make = |_: &_, worlds| VecEnv::new(id, options, worlds);
+        let numbers = (episodes, seed);
+        self.play_traced(&env, &make, id, numbers, lines, &mut |_| {})
     }
 
-    /// The same, giving away what the agent's critics expected.
+    /// The same in the worlds that `make` makes, giving away what the agent's critics expected.
     fn play_traced(
         &self,
+        env: &Env,
+        make: &MakeWorlds<'_>,
         id: &str,
-        options: &EnvOptions,
-        episodes: u32,
-        seed: u64,
+        (episodes, seed): (u32, u64),
         lines: &mut EpisodeLines,
         traced: &mut dyn FnMut(Trace),
     ) -> Outcome {
-        let env = Env::new(id, options).map_err(Failure::bad)?;
-        let policy = self.policy(&env)?;
+        let policy = self.policy(env)?;
         let threads = crate::settings::cores();
         let numbers: Vec<u32> = (0..episodes).collect();
         let mut ticker = Ticker::new(episodes.into(), "episodes");
-        for some in numbers.chunks(AT_ONCE as usize) {
+        // Of several tasks, each number has the one that it has in a single turn.
+        let at_once = AT_ONCE.next_multiple_of(policy.config().env.tasks().len());
+        for some in numbers.chunks(at_once) {
             ticker.at(some[0].into());
             let seeds: Vec<u64> =
                 some.iter().map(|&number| seed.wrapping_add(number.into())).collect();
-            let make = |_: &_, worlds| VecEnv::new(id, options, worlds);
             let never = AtomicBool::new(false);
-            let played = play_traced(&never, &policy, self.choice, &make, &seeds, threads)
+            let played = play_traced(&never, &policy, self.choice, make, &seeds, threads)
                 .map_err(Failure::bad)?;
             let played = played.unwrap_or_default();
             ticker.clear();

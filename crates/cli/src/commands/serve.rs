@@ -109,7 +109,7 @@ mod trained {
             let elsewhere = Elsewhere { maps: self.maps.as_deref(), iwad: self.iwad.as_deref() };
             let options = trained_options(&config.env, elsewhere.where_missing(&config.env))
                 .map_err(Failure::line)?;
-            Ok((config.env.id, options))
+            Ok((crate::settings::first_task(&config.env), options))
         }
 
         fn load(&self, run: &Path, best: bool, choice: Choice, env: &Env) -> Result<Agent, String> {

@@ -10,7 +10,7 @@ use crate::progress::{Progress, grouped};
 use crate::settings::{Elsewhere, scenario_of};
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use hasard_envs::{EnvOptions, VecEnv};
+use hasard_envs::EnvOptions;
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::progress_bar::line;
@@ -40,7 +40,8 @@ pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, F
     let algorithm: AlgorithmKind = args.algo.parse().map_err(Failure::bad)?;
     // By the algorithm's own name, however it was typed.
     let directory = args.out.clone().unwrap_or_else(|| {
-        PathBuf::from(format!("runs/{}-{algorithm}-seed{}", args.env, args.seed))
+        let tasks = args.env.replace(',', "+");
+        PathBuf::from(format!("runs/{tasks}-{algorithm}-seed{}", args.seed))
     });
     let (start, config) = if args.resume && directory.join("config.json").exists() {
         let config = read_config(&directory).map_err(Failure::bad)?;
@@ -113,7 +114,7 @@ impl Begun<'_> {
             if !told.replace(true) {
                 begins(&self);
             }
-            VecEnv::new(&env.id, &self.options, worlds)
+            env.worlds(&self.options, worlds)
         };
         let mut hooks = Hooks { stop: hooks.stop, report: &mut hear, warn: &mut *hooks.warn };
         let summary = train_together(team, self.start.clone(), &self.directory, &make, &mut hooks)

@@ -103,6 +103,8 @@ pub fn episode_costs(terms: &[CostTerm], sums: &[f64]) -> Vec<EpisodeCost> {
 /// A finished episode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
+    /// The id of its task in a batch of several; `None` where all lanes have the same.
+    pub task: Option<&'static str>,
     /// Lane of the whole batch that it ran in.
     pub lane: usize,
     /// Seed it was reset with.
@@ -112,7 +114,8 @@ pub struct Episode {
     /// Sum of costs.
     pub cost: f64,
     /// Sum of every cost term of the environment, in the order of its terms. The counted ones
-    /// together are the cost; a constraint may be on any of them.
+    /// together are the cost; a constraint may be on any of them. Of one of several tasks, its own
+    /// terms, and last the whole cost under the task's id.
     pub costs: Vec<EpisodeCost>,
     /// Length in policy steps.
     pub length: u32,

@@ -5,6 +5,7 @@ mod check;
 mod fields;
 mod generate;
 mod intern;
+pub(crate) use intern::intern;
 mod layers;
 mod map_file;
 mod mistakes;

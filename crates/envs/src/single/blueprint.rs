@@ -76,12 +76,13 @@ impl Blueprint {
         rules.prepare(&mut world);
         let (start_tic, end_tic) = facts::clock(id, options.rules, options.hard);
         let (whose_rules, whose_constraint) = options.actions_of();
+        let space = ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions);
         // Its names may come to be those of another file: these worlds stay of this one.
         let scenario = options.scenario.or(id.scenario.file.map(|_| id.scenario));
         Ok(Blueprint {
             id,
             options: EnvOptions { scenario, ..options.clone() },
-            space: ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions),
+            space: space.within(options.together.clone()),
             cost_terms: facts::cost_terms(id.scenario),
             start_tic,
             end_tic,

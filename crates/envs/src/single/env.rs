@@ -306,6 +306,7 @@ impl Env {
     #[must_use]
     pub fn episode(&self) -> Episode {
         Episode {
+            task: None,
             lane: 0,
             seed: self.seed,
             episode_return: self.totals.episode_return,

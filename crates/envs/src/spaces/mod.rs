@@ -1,3 +1,4 @@
 //! What can be done: action spaces and commands by name.
 
 pub mod action;
+mod together;

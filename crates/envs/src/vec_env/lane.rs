@@ -148,12 +148,19 @@ impl Outbox {
 }
 
 /// What is wrong with the costs of an episode, if they are not those of all terms of its
-/// environment: whoever holds a term against a budget relies on it, and a term left out would pass
-/// for one that cost nothing.
+/// environment: who holds a term against a budget relies on it, and a term left out would pass for
+/// one that cost nothing. One of several tasks reports its own terms and its whole cost.
 fn unreported(env: &dyn Environment, episode: &Episode) -> Option<String> {
     let reported = episode.costs.iter().map(|one| (one.name, one.counted));
     let terms = env.cost_terms().iter().map(|term| (term.name, term.counted));
-    (!reported.eq(terms)).then(|| "its episode does not report every cost term".to_string())
+    let complete = match episode.task {
+        None => reported.eq(terms),
+        Some(task) => {
+            episode.costs.iter().any(|one| one.name == task)
+                && reported.into_iter().all(|one| terms.clone().any(|term| term == one))
+        }
+    };
+    (!complete).then(|| "its episode does not report every cost term".to_string())
 }
 
 /// How the lanes of a batch go on after an episode's end.

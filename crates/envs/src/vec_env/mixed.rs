@@ -1,13 +1,17 @@
 //! Different tasks in one batch: each lane's environment behind the actions, cost terms and
 //! statistics that all of them have together.
 //!
-//! A button that a task does not have does nothing there, a cost term that it does not have costs
-//! nothing, and a statistic that it does not have is 0. So a lane's episodes are those of its task
-//! alone, seed by seed.
+//! A button that a task does not have does nothing there. In a step's numbers a cost term that it
+//! does not have costs nothing, and a statistic that it does not have is 0; its episodes report
+//! their own terms and statistics alone. So a lane's episodes are those of its task, seed by seed.
+//!
+//! Beside the terms of the tasks there is an uncounted one of each task's id: what the task costs
+//! as a whole, for a budget of its own.
 
+use crate::own::intern;
 use crate::{
     ActionGroup, ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, Environment, Episode,
-    Happening, Step, episode_costs,
+    EpisodeCost, Happening, Step,
 };
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -35,6 +39,9 @@ pub struct Mixture {
 #[derive(Debug)]
 struct Part {
     task: MixedTask,
+    /// The task's id, and the place of the term that has it as its name.
+    name: &'static str,
+    whole_cost: usize,
     space: ActionSpace,
     terms: &'static [CostTerm],
     statistics: Vec<&'static str>,
@@ -53,8 +60,9 @@ impl Mixture {
     /// # Errors
     /// Names two tasks that use one name for a cost term that counts in one of them alone.
     pub fn of(envs: &[Env]) -> Result<Mixture, EnvError> {
-        let space = envs.iter().fold(empty_space(), |space, env| joined(space, env.action_space()));
-        let terms = joined_terms(envs)?;
+        let space = ActionSpace::joined(envs.iter().map(|env| env.action_space().clone()));
+        let ids: Vec<EnvId> = envs.iter().map(Env::id).collect();
+        let terms = Mixture::cost_terms(&ids)?;
         let mut statistics: Vec<&'static str> = Vec::new();
         for name in envs.iter().flat_map(Environment::stat_names) {
             if !statistics.contains(&name) {
@@ -65,6 +73,8 @@ impl Mixture {
             let own = env.action_space();
             let choices: Vec<_> = own.groups.iter().map(|group| route(&space, group)).collect();
             let place = |name: &str| statistics.iter().position(|known| *known == name);
+            let name = intern(&env.id().to_string());
+            let whole_cost = terms.iter().position(|term| term.name == name);
             let task = MixedTask {
                 id: env.id(),
                 extent: env.extent(),
@@ -73,6 +83,8 @@ impl Mixture {
             };
             Arc::new(Part {
                 task,
+                name,
+                whole_cost: whole_cost.expect("each task has a term of its id"),
                 space: space.clone(),
                 terms,
                 statistics: statistics.clone(),
@@ -83,6 +95,15 @@ impl Mixture {
             })
         };
         Ok(Mixture { parts: envs.iter().map(part).collect() })
+    }
+
+    /// The cost terms of a mixture of environments: those of each, then an uncounted one for each
+    /// id, what that task costs as a whole.
+    ///
+    /// # Errors
+    /// Names two tasks that use one name for a cost term that counts in one of them alone.
+    pub fn cost_terms(ids: &[EnvId]) -> Result<&'static [CostTerm], EnvError> {
+        joined_terms(ids)
     }
 
     /// The tasks, in the order given.
@@ -118,36 +139,6 @@ pub(super) fn environments(ids: &str, options: &EnvOptions) -> Result<Vec<Env>, 
     ids.split(',').map(|id| Env::new(id.trim(), options)).collect()
 }
 
-const fn empty_space() -> ActionSpace {
-    ActionSpace { groups: Vec::new(), deltas: Vec::new() }
-}
-
-/// A space with the buttons of both: groups that share a button become one, so that buttons that
-/// exclude each other in one of the tasks do so in all.
-fn joined(mut space: ActionSpace, other: &ActionSpace) -> ActionSpace {
-    for group in &other.groups {
-        let shares = |known: &ActionGroup| {
-            known.buttons.iter().any(|(name, _)| group.buttons.iter().any(|(own, _)| own == name))
-        };
-        let place = space.groups.iter().position(&shares).unwrap_or(space.groups.len());
-        let (sharing, apart): (Vec<_>, Vec<_>) = space.groups.into_iter().partition(shares);
-        let mut buttons: Vec<_> = sharing.into_iter().flat_map(|group| group.buttons).collect();
-        for button in &group.buttons {
-            if !buttons.iter().any(|(name, _)| *name == button.0) {
-                buttons.push(*button);
-            }
-        }
-        space.groups = apart;
-        space.groups.insert(place, ActionGroup { buttons });
-    }
-    for delta in &other.deltas {
-        if !space.deltas.contains(delta) {
-            space.deltas.push(*delta);
-        }
-    }
-    space
-}
-
 /// The sub-action of a space that has a group's buttons, and which of the group's choices each of
 /// its choices is.
 fn route(space: &ActionSpace, group: &ActionGroup) -> (usize, Vec<u8>) {
@@ -180,21 +171,27 @@ fn places<T: PartialEq>(these: &[T], all: &[T]) -> Vec<usize> {
         .collect()
 }
 
-fn joined_terms(envs: &[Env]) -> Result<&'static [CostTerm], EnvError> {
+fn joined_terms(ids: &[EnvId]) -> Result<&'static [CostTerm], EnvError> {
     let mut terms: Vec<CostTerm> = Vec::new();
-    for env in envs {
-        for term in env.cost_terms() {
+    for id in ids {
+        for term in id.scenario.cost_terms() {
             match terms.iter().find(|known| known.name == term.name) {
                 None => terms.push(*term),
                 Some(known) if known.counted == term.counted => {}
                 Some(_) => {
                     return Err(EnvError::Option {
                         option: "a mixed batch",
-                        given: format!("the cost term `{}` of {}", term.name, env.id()),
+                        given: format!("the cost term `{}` of {id}", term.name),
                         allowed: "a name that counts in all of its tasks or in none".to_string(),
                     });
                 }
             }
+        }
+    }
+    for id in ids {
+        let whole = CostTerm { name: intern(&id.to_string()), counted: false };
+        if !terms.contains(&whole) {
+            terms.push(whole);
         }
     }
     Ok(kept(terms))
@@ -222,8 +219,9 @@ struct MixedLane {
 }
 
 impl MixedLane {
-    fn lay_out_costs(&mut self) {
+    fn lay_out_costs(&mut self, whole: f64) {
         self.costs.fill(0.0);
+        self.costs[self.part.whole_cost] = whole;
         for (&place, &cost) in self.part.own_terms.iter().zip(self.env.step_costs()) {
             self.costs[place] = cost;
         }
@@ -256,7 +254,7 @@ impl Environment for MixedLane {
             *delta = deltas[place];
         }
         let step = self.env.step(&self.own_actions, &self.own_deltas);
-        self.lay_out_costs();
+        self.lay_out_costs(step.cost);
         step
     }
 
@@ -293,13 +291,9 @@ impl Environment for MixedLane {
     }
 
     fn episode(&self) -> Episode {
-        let own = self.env.episode();
-        let mut sums = vec![0.0; self.part.terms.len()];
-        for (&place, cost) in self.part.own_terms.iter().zip(&own.costs) {
-            sums[place] = cost.cost;
-        }
-        let mut stats = Vec::new();
-        self.stats(&mut stats);
-        Episode { costs: episode_costs(self.part.terms, &sums), stats, ..own }
+        let mut own = self.env.episode();
+        let cost = own.cost;
+        own.costs.push(EpisodeCost { name: self.part.name, counted: false, cost });
+        Episode { task: Some(self.part.name), ..own }
     }
 }

@@ -93,6 +93,7 @@ impl Environment for Echo {
     }
     fn episode(&self) -> Episode {
         Episode {
+            task: None,
             lane: 0,
             seed: self.seed,
             episode_return: 0.0,

@@ -233,6 +233,7 @@ mod tests {
             let mut watch = crate::runs::watch::Watch::new(&config);
             for length in lengths.repeat(16) {
                 let episode = hasard_envs::Episode {
+                    task: None,
                     lane: 0,
                     seed: 0,
                     episode_return: 0.0,

@@ -59,6 +59,12 @@ impl AlgorithmKind {
         )
     }
 
+    /// Whether it shapes rewards by a single cost.
+    #[must_use]
+    pub const fn knows_one_cost(self) -> bool {
+        matches!(self, Self::PpoSaute | Self::PpoCost)
+    }
+
     /// Optimiser states of each network: CUP's two steps have one each.
     #[must_use]
     pub const fn optimisers(self) -> usize {

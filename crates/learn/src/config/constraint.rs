@@ -81,19 +81,24 @@ pub fn conditional_value_at_risk(costs: &[f64], share: f64) -> Option<f64> {
 /// A constraint: a cost and the budget of an episode.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct Constraint {
-    /// Name of a cost term; `null` for the scalar cost.
+    /// Name of a cost term; `null` for the scalar cost. Of several tasks, the id of one stands for
+    /// the scalar cost of that one.
     pub term: Option<String>,
     /// Cost that an episode may have.
     pub budget: f64,
 }
 
 impl Constraint {
-    /// What an episode cost under it. A term that the episode does not report is an error: taken
-    /// for 0, it would be within any budget.
-    pub fn cost_of(&self, episode: &Episode) -> Result<f64, LearnError> {
-        let Some(name) = &self.term else { return Ok(episode.cost) };
+    /// What an episode cost under it; nothing for one of several tasks that does not have the term.
+    /// Otherwise a term that the episode does not report is an error: taken for 0, it would be
+    /// within any budget.
+    pub fn cost_of(&self, episode: &Episode) -> Result<Option<f64>, LearnError> {
+        let Some(name) = &self.term else { return Ok(Some(episode.cost)) };
         let found = episode.costs.iter().find(|one| one.name == name);
-        found.map(|one| one.cost).ok_or_else(|| {
+        if found.is_none() && episode.task.is_some() {
+            return Ok(None);
+        }
+        found.map(|one| Some(one.cost)).ok_or_else(|| {
             let names: Vec<&str> = episode.costs.iter().map(|one| one.name).collect();
             LearnError::Config(format!(
                 "an episode does not report the cost term '{name}'; it has {}",
@@ -134,6 +139,7 @@ mod tests {
     #[test]
     fn a_term_that_is_not_reported_is_an_error() {
         let costs = |scenario: Scenario, sums: &[f64]| Episode {
+            task: None,
             lane: 0,
             seed: 0,
             episode_return: 1.0,
@@ -146,9 +152,9 @@ mod tests {
         };
         let on = |term: Option<&str>| Constraint { term: term.map(str::to_string), budget: 2.0 };
         let venture = costs(Scenario::VolcanicVenture, &[7.0, 81.0]);
-        assert_eq!(on(None).cost_of(&venture).unwrap(), 7.0);
-        assert_eq!(on(Some("lava")).cost_of(&venture).unwrap(), 7.0);
-        assert_eq!(on(Some("jumps")).cost_of(&venture).unwrap(), 81.0);
+        assert_eq!(on(None).cost_of(&venture).unwrap(), Some(7.0));
+        assert_eq!(on(Some("lava")).cost_of(&venture).unwrap(), Some(7.0));
+        assert_eq!(on(Some("jumps")).cost_of(&venture).unwrap(), Some(81.0));
         let rush = costs(Scenario::RemedyRush, &[7.0]);
         let error = on(Some("jumps")).cost_of(&rush).unwrap_err().to_string();
         assert!(error.contains("'jumps'") && error.contains("harmful_items"), "{error}");

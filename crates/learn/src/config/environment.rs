@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, Scenario};
+use hasard_envs::{
+    ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, Environment, FrameSize, Layout,
+    Mixture, ObservationKind, RuleSet, Scenario, VecEnv, VecOptions,
+};
 use serde::{Deserialize, Serialize};
 
 use super::own_scenario::OwnScenario;
@@ -11,11 +14,15 @@ use crate::error::LearnError;
 /// The environment and its options, in words that a file can hold.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct EnvConfig {
-    /// Its id, such as `VolcanicVentureLevel1-v0`.
+    /// Its id, such as `VolcanicVentureLevel1-v0`; several, joined by commas, are tasks that the
+    /// worlds take in turn.
     pub id: String,
     /// The file of an own scenario, with all of its text; `null` for the benchmark's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario_file: Option<OwnScenario>,
+    /// The files of the own scenarios among several tasks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scenario_files: Vec<OwnScenario>,
     /// `paper`, `released` or `tables`.
     pub rules: String,
     /// Detonator's Dilemma 1 under `tables` with the creatures of the first runs.
@@ -58,9 +65,19 @@ impl EnvConfig {
     /// An environment with the learner's frames and otherwise default options.
     #[must_use]
     pub fn new(id: &str) -> EnvConfig {
+        let own = |id: &str| id.parse::<EnvId>().ok().and_then(|id| OwnScenario::of(id.scenario));
+        let mut scenario_files: Vec<OwnScenario> = Vec::new();
+        if id.contains(',') {
+            for file in id.split(',').filter_map(own) {
+                if !scenario_files.contains(&file) {
+                    scenario_files.push(file);
+                }
+            }
+        }
         EnvConfig {
             id: id.to_string(),
-            scenario_file: id.parse::<EnvId>().ok().and_then(|id| OwnScenario::of(id.scenario)),
+            scenario_file: own(id),
+            scenario_files,
             rules: "paper".into(),
             early_creatures: false,
             hard: false,
@@ -102,6 +119,7 @@ impl EnvConfig {
             frame_stack: self.frame_stack,
             published_depth: self.published_depth,
             published_colours: self.published_colours,
+            together: self.joint_actions()?,
             ..EnvOptions::default()
         })
     }
@@ -122,8 +140,89 @@ impl EnvConfig {
     }
 
     /// The environment that the id names, in the own scenario if there is one.
+    ///
+    /// # Errors
+    /// Names the nearest id, or says that there are several.
     pub fn env_id(&self) -> Result<EnvId, LearnError> {
         EnvId::within(self.scenario_file.map(OwnScenario::scenario), &self.id)
             .map_err(|error| LearnError::Config(error.to_string()))
+    }
+
+    /// The cost terms of its episodes; nothing for ids that are not registered, such as those of
+    /// tests.
+    pub(crate) fn cost_terms(&self) -> Result<Option<&'static [CostTerm]>, LearnError> {
+        if !self.is_mixed() {
+            return Ok(self.scenario().map(Scenario::cost_terms));
+        }
+        Mixture::cost_terms(&self.env_ids()?)
+            .map(Some)
+            .map_err(|error| LearnError::Config(error.to_string()))
+    }
+
+    /// Whether the worlds have several tasks.
+    #[must_use]
+    pub fn is_mixed(&self) -> bool {
+        self.id.contains(',')
+    }
+
+    /// The action space of several tasks together.
+    fn joint_actions(&self) -> Result<Option<ActionSpace>, LearnError> {
+        if !self.is_mixed() {
+            return Ok(None);
+        }
+        let (ids, rules) = (self.env_ids()?, self.rule_set()?);
+        Ok(Some(ActionSpace::together(&ids, rules, self.hard, self.full_actions)))
+    }
+
+    /// The environment of each task.
+    fn env_ids(&self) -> Result<Vec<EnvId>, LearnError> {
+        self.tasks().iter().map(EnvConfig::env_id).collect()
+    }
+
+    /// Each task by itself, in the order of the ids; one that stands there twice comes twice.
+    #[must_use]
+    pub fn tasks(&self) -> Vec<EnvConfig> {
+        if !self.is_mixed() {
+            return vec![self.clone()];
+        }
+        let task = |id: &str| {
+            let has = |file: &&OwnScenario| {
+                file.scenario().environments().any(|own| own.to_string() == id)
+            };
+            EnvConfig {
+                id: id.to_string(),
+                scenario_file: self.scenario_files.iter().find(has).copied(),
+                scenario_files: Vec::new(),
+                ..self.clone()
+            }
+        };
+        self.id.split(',').map(task).collect()
+    }
+
+    /// An environment of each task, whose options are otherwise `options`.
+    ///
+    /// # Errors
+    /// Names the nearest id, or says what is wrong with an option.
+    pub fn envs(&self, options: &EnvOptions) -> Result<Vec<Env>, EnvError> {
+        let own = |task: EnvConfig| {
+            let scenario = task.scenario_file.map(OwnScenario::scenario).or(options.scenario);
+            // A batch lays the tasks' own spaces out together.
+            let together = None;
+            Env::new(&task.id, &EnvOptions { scenario, together, ..options.clone() })
+        };
+        self.tasks().into_iter().map(own).collect()
+    }
+
+    /// Worlds of the task, or of all tasks in turn, whose options are otherwise `options`.
+    ///
+    /// # Errors
+    /// As [`EnvConfig::envs`]; or what does not go together in a batch.
+    pub fn worlds(&self, options: &EnvOptions, worlds: VecOptions) -> Result<VecEnv, EnvError> {
+        let firsts = self.envs(options)?;
+        let sibling = |task: usize| Box::new(firsts[task].sibling()) as Box<dyn Environment>;
+        if firsts.len() == 1 {
+            return VecEnv::from_fn(worlds, |_| Ok(sibling(0)));
+        }
+        VecEnv::mixed(Mixture::of(&firsts)?, worlds, |task, _| Ok(sibling(task)))
     }
 }

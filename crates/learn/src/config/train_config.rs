@@ -87,6 +87,31 @@ fn whole() -> f64 {
     1.0
 }
 
+/// Most constraints of a run.
+const MOST_CONSTRAINTS: usize = 32;
+
+/// The budgets that an environment has of itself: one on its cost. Each of several tasks has its
+/// own, but for algorithms that know a single cost: there the smallest holds for all.
+fn usual_constraints(
+    algorithm: AlgorithmKind,
+    env: &EnvConfig,
+) -> Result<Vec<Constraint>, LearnError> {
+    let rules = env.rule_set()?;
+    let mut all: Vec<Constraint> = Vec::new();
+    for task in env.tasks() {
+        let budget = task.env_id()?.safety_budget(rules, env.hard);
+        let term = env.is_mixed().then_some(task.id);
+        if !all.iter().any(|known| known.term == term) {
+            all.push(Constraint { term, budget });
+        }
+    }
+    if env.is_mixed() && algorithm.knows_one_cost() {
+        let budget = all.iter().map(|one| one.budget).fold(f64::INFINITY, f64::min);
+        all = vec![Constraint { term: None, budget }];
+    }
+    Ok(all)
+}
+
 impl TrainConfig {
     /// The settings of a preset for an algorithm on an environment.
     pub fn new(
@@ -94,10 +119,9 @@ impl TrainConfig {
         preset: Preset,
         env: EnvConfig,
     ) -> Result<TrainConfig, LearnError> {
-        let id = env.env_id()?;
-        let budget = id.safety_budget(env.rule_set()?, env.hard);
+        let constraints = usual_constraints(algorithm, &env)?;
         let mut config = TrainConfig::plain(algorithm, preset, env);
-        config.constraints[0].budget = budget;
+        config.constraints = constraints;
         config.check()?;
         Ok(config)
     }
@@ -269,8 +293,12 @@ impl TrainConfig {
                 return refuse("the constraint statistic", &self.constraint_statistic, &allowed);
             }
         }
-        if self.constraints.is_empty() || self.constraints.len() > 8 {
-            return refuse("the number of constraints", &self.constraints.len(), "1 to 8");
+        if self.constraints.is_empty() || self.constraints.len() > MOST_CONSTRAINTS {
+            let allowed = format!("1 to {MOST_CONSTRAINTS}");
+            return refuse("the number of constraints", &self.constraints.len(), &allowed);
+        }
+        if self.env.is_mixed() {
+            self.check_tasks()?;
         }
         for constraint in &self.constraints {
             if !constraint.budget.is_finite() || constraint.budget < 0.0 {
@@ -278,11 +306,10 @@ impl TrainConfig {
             }
         }
         // Ids that are not registered, such as those of tests, tell when their worlds are made.
-        if let Some(scenario) = self.env.scenario() {
-            find_terms(scenario.cost_terms(), &self.constraints)?;
+        if let Some(terms) = self.env.cost_terms()? {
+            find_terms(terms, &self.constraints)?;
         }
-        let one_cost = matches!(self.algorithm, AlgorithmKind::PpoSaute | AlgorithmKind::PpoCost);
-        if one_cost && self.constraints.len() > 1 {
+        if self.algorithm.knows_one_cost() && self.constraints.len() > 1 {
             let allowed =
                 format!("1 for {}, which shapes the reward by a single cost", self.algorithm);
             return refuse("the number of constraints", &self.constraints.len(), &allowed);
@@ -297,6 +324,54 @@ impl TrainConfig {
             );
         }
         self.check_annealing()
+    }
+
+    /// Refuses what several tasks cannot have.
+    fn check_tasks(&self) -> Result<(), LearnError> {
+        let tasks = self.env.tasks().len();
+        let refuse = |name: &str, given: &dyn fmt::Display, allowed: String| {
+            Err(LearnError::Config(format!(
+                "{name} cannot be {given} with {tasks} tasks; it must be {allowed}"
+            )))
+        };
+        for (name, given) in [
+            ("the number of worlds", self.sampling.lanes),
+            ("the episodes of an evaluation", self.evaluation.episodes),
+            ("the confirming episodes", self.confirming_episodes()),
+        ] {
+            if given < tasks {
+                return refuse(name, &given, format!("at least {tasks}"));
+            }
+        }
+        if self.constraint_statistic == ConstraintStatistic::StepMean {
+            let allowed = "episode-mean, which tells tasks apart".to_string();
+            return refuse("the constraint statistic", &self.constraint_statistic, allowed);
+        }
+        if !self.curriculum.is_empty() {
+            return refuse("a curriculum", &"set", "of the levels of one scenario".to_string());
+        }
+        Ok(())
+    }
+
+    /// How many worlds have each constraint: all, or those of the tasks whose episodes report its
+    /// term.
+    #[must_use]
+    pub fn lanes_under_constraints(&self) -> Vec<usize> {
+        let tasks = self.env.tasks();
+        let has = |task: &EnvConfig, term: &Option<String>| {
+            term.as_ref().is_none_or(|name| {
+                tasks.len() == 1
+                    || *name == task.id
+                    || task.scenario().is_none_or(|scenario| {
+                        scenario.cost_terms().iter().any(|term| term.name == name)
+                    })
+            })
+        };
+        let lanes = |constraint: &Constraint| {
+            let own: Vec<bool> = tasks.iter().map(|task| has(task, &constraint.term)).collect();
+            (0..self.sampling.lanes).filter(|lane| own[lane % own.len()]).count()
+        };
+        self.constraints.iter().map(lanes).collect()
     }
 
     /// Steps of the trajectories that are learned from.

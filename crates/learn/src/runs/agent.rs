@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use hasard_envs::{CostTerm, Scenario};
+use hasard_envs::CostTerm;
 
 use crate::algorithms::shaping;
 use crate::config::constraint::find_terms;
@@ -231,7 +231,7 @@ impl TrainedPolicy {
         let device = ComputeDevice::of(&config)?;
         let mut learner = Learner::new(&config, &shape, &device);
         restore(&mut learner)?;
-        let terms = config.env.scenario().map_or(&[][..], Scenario::cost_terms);
+        let terms = config.env.cost_terms()?.unwrap_or_default();
         TrainedPolicy::new(&config, &shape, learner.publish(), device, terms)
     }
 

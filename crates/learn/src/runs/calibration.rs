@@ -133,6 +133,7 @@ mod tests {
 
     fn played(costs: &[f64], predicted: &[f64], truncated: bool) -> (Episode, Trace) {
         let episode = Episode {
+            task: None,
             lane: 0,
             seed: 0,
             episode_return: 0.0,

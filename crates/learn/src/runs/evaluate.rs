@@ -13,13 +13,14 @@ use crate::runs::session::MakeWorlds;
 use crate::sampling::gather::panic_text;
 
 pub use crate::runs::agent::{Action, Agent, Choice, Memory, Thought, Which, run_config};
-pub use crate::runs::evaluation::{Evaluation, Judgement, Trace};
+pub use crate::runs::evaluation::{Evaluation, Judgement, TaskEvaluation, Trace};
 
 /// Most worlds that one agent acts in side by side.
 const MOST_LANES: usize = 32;
 
 /// Plays an episode of each seed, on `threads` threads, and gives them in the order of the seeds.
-/// What happens in an episode follows from its seed alone.
+/// What happens in an episode follows from its seed alone; of several tasks, the episodes have one
+/// after the other, whatever the number of threads.
 pub fn play(
     policy: &TrainedPolicy,
     choice: Choice,
@@ -45,9 +46,12 @@ pub fn play_traced(
         return Ok(Some(Vec::new()));
     }
     let mut parts = Vec::new();
-    for own in seeds.chunks(seeds.len().div_ceil(threads.max(1))) {
-        // As many in each turn as divide the seeds evenly.
-        let lanes = own.len().div_ceil(own.len().div_ceil(MOST_LANES));
+    let tasks = policy.config().env.id.split(',').count();
+    let chunk = seeds.len().div_ceil(threads.max(1)).next_multiple_of(tasks);
+    for own in seeds.chunks(chunk) {
+        // As many in each turn as divide the seeds evenly, and so that a lane's task is its
+        // episode's.
+        let lanes = own.len().div_ceil(own.len().div_ceil(MOST_LANES)).next_multiple_of(tasks);
         let options = VecOptions { lanes, autoreset: Autoreset::Disabled, ..VecOptions::default() };
         let worlds = make_worlds(&policy.config().env, options)
             .map_err(|error| LearnError::Worlds(error.to_string()))?;
@@ -82,8 +86,10 @@ fn play_all(
     let (lanes, terms) = (worlds.lanes(), worlds.cost_terms().len());
     let mut batch = worlds.whole_batch();
     let mut all = Vec::with_capacity(seeds.len());
-    // One critic a constraint, after that of the reward.
-    let critics = policy.cost_units();
+    // One critic a constraint, after that of the reward; in a world that is none of the several
+    // tasks, their constraints say nothing.
+    let alone = policy.config().env.is_mixed() && worlds.tasks().is_empty();
+    let critics = if alone { &[] } else { policy.cost_units() };
     let worth = |moments: &Moments, value: f32| match policy.config().learning.normaliser {
         ReturnNormaliser::Running => moments.denormalise(value),
         ReturnNormaliser::PopArt => moments.scale_up(value),

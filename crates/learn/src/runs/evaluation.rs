@@ -50,6 +50,21 @@ impl Judgement {
     }
 }
 
+/// What the episodes of one of several tasks came to.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct TaskEvaluation {
+    /// The task's id.
+    pub task: String,
+    /// Number of episodes.
+    pub episodes: usize,
+    /// Sum of rewards.
+    pub episode_return: Estimate,
+    /// Sum of costs.
+    pub cost: Estimate,
+    /// Steps.
+    pub length: Estimate,
+}
+
 /// What some episodes of a policy came to.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct Evaluation {
@@ -64,16 +79,28 @@ pub struct Evaluation {
     pub tails: Tails,
     /// Steps.
     pub length: Estimate,
-    /// Each constraint by its own term and budget.
+    /// Each constraint by its own term and budget, over the episodes of the tasks that have it.
     pub constraints: Vec<Judgement>,
+    /// Each of several tasks by itself, in the order of their episodes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tasks: Vec<TaskEvaluation>,
 }
 
 impl Evaluation {
     /// Judges episodes; those that do not report a constraint's term are an error.
     pub fn of(episodes: &[Episode], constraints: &[Constraint]) -> Result<Evaluation, LearnError> {
         let judge = |one: &Constraint| {
-            let costs: Vec<f64> =
-                episodes.iter().map(|episode| one.cost_of(episode)).collect::<Result<_, _>>()?;
+            let costs: Vec<f64> = episodes
+                .iter()
+                .filter_map(|episode| one.cost_of(episode).transpose())
+                .collect::<Result<_, _>>()?;
+            if costs.is_empty() && !episodes.is_empty() {
+                let term = one.term.as_deref().unwrap_or("cost");
+                return Err(LearnError::Config(format!(
+                    "none of {} episodes is of a task with the cost term '{term}'; play more",
+                    episodes.len()
+                )));
+            }
             let spread = tails(costs.iter().copied(), Some(one.budget));
             Ok(Judgement {
                 term: one.term.clone(),
@@ -89,6 +116,7 @@ impl Evaluation {
             tails: tails(episodes.iter().map(|episode| episode.cost), None),
             length: Estimate::of(episodes.iter().map(|episode| f64::from(episode.length))),
             constraints: constraints.iter().map(judge).collect::<Result<_, LearnError>>()?,
+            tasks: by_task(episodes),
         })
     }
 
@@ -116,6 +144,27 @@ impl Evaluation {
     }
 }
 
+/// Each of several tasks by itself.
+fn by_task(episodes: &[Episode]) -> Vec<TaskEvaluation> {
+    let mut names: Vec<&str> = Vec::new();
+    for task in episodes.iter().filter_map(|episode| episode.task) {
+        if !names.contains(&task) {
+            names.push(task);
+        }
+    }
+    let of = |task: &str| {
+        let own = || episodes.iter().filter(|episode| episode.task == Some(task));
+        TaskEvaluation {
+            task: task.to_string(),
+            episodes: own().count(),
+            episode_return: Estimate::of(own().map(|episode| episode.episode_return)),
+            cost: Estimate::of(own().map(|episode| episode.cost)),
+            length: Estimate::of(own().map(|episode| f64::from(episode.length))),
+        }
+    };
+    names.into_iter().map(of).collect()
+}
+
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -124,6 +173,7 @@ pub(super) mod tests {
     /// An episode of Volcanic Venture.
     pub(in crate::runs) fn episode(cost: f64, jumps: f64) -> Episode {
         Episode {
+            task: None,
             lane: 0,
             seed: 0,
             episode_return: 1.0,

@@ -24,6 +24,8 @@ const fn metric(
 
 const CRITIC: &str = "algorithms with critics of costs";
 const SECOND: &str = "TRPO, TRPOLag, TRPOPID, CPO";
+const TASKS: &str = "runs of several tasks";
+const EVALUATED_TASKS: &str = "rows with an evaluation, runs of several tasks";
 const EVALUATED: &str = "rows with an evaluation";
 const SEVERAL: &str = "several constraints";
 const NAMED: &str = "a constraint on a named cost term";
@@ -246,6 +248,42 @@ pub const METRICS: &[Metric] = &[
         "",
         "Mean of each of the scenario's statistics over the latest training episodes.",
     ),
+    metric(
+        "task/ID/return",
+        "return",
+        TASKS,
+        "Mean return of the latest training episodes of that task.",
+    ),
+    metric(
+        "task/ID/cost",
+        "cost",
+        TASKS,
+        "Mean cost of the latest training episodes of that task.",
+    ),
+    metric(
+        "task/ID/length",
+        "steps",
+        TASKS,
+        "Mean length of the latest training episodes of that task.",
+    ),
+    metric(
+        "eval/task/ID/return",
+        "return",
+        EVALUATED_TASKS,
+        "Mean return of the evaluation episodes of that task.",
+    ),
+    metric(
+        "eval/task/ID/cost",
+        "cost",
+        EVALUATED_TASKS,
+        "Mean cost of the evaluation episodes of that task.",
+    ),
+    metric(
+        "eval/task/ID/length",
+        "steps",
+        EVALUATED_TASKS,
+        "Mean length of the evaluation episodes of that task.",
+    ),
 ];
 
 /// What a key of a row means; `eval/cost/lava` is explained as `eval/cost/TERM`.
@@ -253,10 +291,12 @@ pub const METRICS: &[Metric] = &[
 pub fn explain(key: &str) -> Option<&'static Metric> {
     METRICS.iter().find(|metric| {
         let pattern = metric.name;
-        match pattern.strip_suffix("TERM").or(pattern.strip_suffix("NAME")) {
-            Some(head) => {
-                key.strip_prefix(head).is_some_and(|rest| !rest.is_empty() && !rest.contains('/'))
-            }
+        let placeholder = ["TERM", "NAME", "ID"].iter().find_map(|word| pattern.split_once(word));
+        match placeholder {
+            Some((head, tail)) => key
+                .strip_prefix(head)
+                .and_then(|rest| rest.strip_suffix(tail))
+                .is_some_and(|name| !name.is_empty() && !name.contains('/')),
             None => key == pattern,
         }
     })
@@ -274,6 +314,8 @@ mod tests {
         }
         assert_eq!(explain("eval/cost/lava").unwrap().name, "eval/cost/TERM");
         assert_eq!(explain("cost/lava").unwrap().name, "cost/TERM");
+        let of_task = explain("eval/task/RemedyRushLevel1-v0/cost").unwrap();
+        assert_eq!(of_task.name, "eval/task/ID/cost");
         assert_eq!(explain("frames").unwrap().unit, "frames");
         assert!(["eval/cost/", "cost/a/b", "fram", ""].iter().all(|key| explain(key).is_none()));
     }

@@ -79,8 +79,8 @@ impl Report {
             None => Vec::new(),
             Some(_) => (0..config.constraints.len())
                 .map(|index| {
-                    watch.recent.iter().map(|e| e.constrained[index]).sum::<f64>()
-                        / watch.recent.len() as f64
+                    let own = || watch.recent.iter().filter_map(|e| e.constrained[index]);
+                    own().sum::<f64>() / own().count() as f64
                 })
                 .collect(),
         };
@@ -158,6 +158,13 @@ impl Report {
                 evaluation.constraints.iter().filter_map(|one| Some((one, one.term.as_ref()?)))
             {
                 put(&format!("eval/cost/{term}"), json!(one.cost.mean));
+            }
+            for one in &evaluation.tasks {
+                for (name, estimate) in
+                    [("return", one.episode_return), ("cost", one.cost), ("length", one.length)]
+                {
+                    put(&format!("eval/task/{}/{name}", one.task), json!(estimate.mean));
+                }
             }
             put("eval/cost_cvar10", json!(evaluation.tails.cvar));
             put("eval/cost_worst", json!(evaluation.tails.worst));

@@ -125,7 +125,8 @@ impl RunDirectory {
         for closing in closings {
             let mut lines = String::new();
             for (number, (episode, _)) in closing.played.iter().enumerate() {
-                lines += &format!("{}\n", episode_line(&config.env.id, number, episode));
+                let id = episode.task.unwrap_or(&config.env.id);
+                lines += &format!("{}\n", episode_line(id, number, episode));
             }
             write_whole(
                 &self.path.join(EPISODES[usize::from(!closing.selected)]),

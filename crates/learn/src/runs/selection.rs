@@ -153,8 +153,10 @@ fn surely_within(
     level: f64,
 ) -> Result<bool, LearnError> {
     for constraint in constraints {
-        let costs: Vec<f64> =
-            episodes.iter().map(|episode| constraint.cost_of(episode)).collect::<Result<_, _>>()?;
+        let costs: Vec<f64> = episodes
+            .iter()
+            .filter_map(|episode| constraint.cost_of(episode).transpose())
+            .collect::<Result<_, _>>()?;
         if upper_bound(&costs, level) > constraint.budget {
             return Ok(false);
         }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use hasard_envs::Episode;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::algorithms::Signal;
 use crate::config::constraint::conditional_value_at_risk;
@@ -20,8 +20,8 @@ pub struct Finished {
     pub cost: f64,
     /// Steps.
     pub length: f64,
-    /// Sum of each constraint's cost.
-    pub constrained: Vec<f64>,
+    /// Sum of each constraint's cost; nothing under one that its task does not have.
+    pub constrained: Vec<Option<f64>>,
     /// Cost terms and statistics, by name.
     pub details: Vec<(String, f64)>,
 }
@@ -43,11 +43,11 @@ pub struct Watch {
     /// Episodes so far.
     pub episodes: u64,
     /// Of the latest, those that finished since a rollout was last learned from with any, and
-    /// rollouts that passed without.
+    /// rollouts that passed without, constraint by constraint.
     #[serde(default)]
     fresh: usize,
-    #[serde(default)]
-    waited: u64,
+    #[serde(default, deserialize_with = "each_or_one")]
+    waited: Vec<u64>,
     /// Sums over them; nothing in a run whose earlier part did not count them.
     #[serde(default)]
     pub totals: Option<Totals>,
@@ -55,9 +55,24 @@ pub struct Watch {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first: Option<FirstEpisodes>,
     window: usize,
-    /// Latest episodes that constraints look at: one a world, so that each counts about once and
-    /// the mean follows the policy as fast as episodes end.
-    constraint_window: usize,
+    /// Latest episodes that each constraint looks at: one a world whose task has it, so that each
+    /// counts about once and the mean follows the policy as fast as episodes end.
+    #[serde(skip)]
+    constraint_windows: Vec<usize>,
+}
+
+/// What older versions wrote is one number for all constraints.
+fn each_or_one<'de, D: Deserializer<'de>>(waited: D) -> Result<Vec<u64>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Waited {
+        Each(Vec<u64>),
+        All(u64),
+    }
+    Ok(match Waited::deserialize(waited)? {
+        Waited::Each(each) => each,
+        Waited::All(all) => vec![all],
+    })
 }
 
 impl Watch {
@@ -68,11 +83,11 @@ impl Watch {
             recent: VecDeque::new(),
             episodes: 0,
             fresh: 0,
-            waited: 0,
+            waited: vec![0; config.constraints.len()],
             totals: Some(Totals { cost: 0.0, violations: vec![0.0; config.constraints.len()] }),
             first: config.learning.budget_annealing.map(|_| FirstEpisodes::default()),
             window: config.reporting.window.max(config.sampling.lanes),
-            constraint_window: config.sampling.lanes,
+            constraint_windows: config.lanes_under_constraints(),
         }
     }
 
@@ -83,8 +98,11 @@ impl Watch {
             let problem = "the checkpoint's episodes were held against other constraints; start a new run with --init-from";
             return Err(LearnError::Config(problem.into()));
         }
-        let (fresh, waited, totals) = (self.fresh, self.waited, self.totals.clone());
-        let first = self.first.clone();
+        let (fresh, totals, first) = (self.fresh, self.totals.clone(), self.first.clone());
+        // What an older version wrote holds for each.
+        let all = self.waited.first().copied().unwrap_or(0);
+        let waited =
+            (0..constraints).map(|index| self.waited.get(index).copied().unwrap_or(all)).collect();
         Ok(Watch {
             recent: self.recent.clone(),
             episodes: self.episodes,
@@ -98,27 +116,36 @@ impl Watch {
 
     /// Notes an episode; one that does not report a constraint's term is an error.
     pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) -> Result<(), LearnError> {
-        let constrained: Vec<f64> =
+        let constrained: Vec<Option<f64>> =
             constraints.iter().map(|one| one.cost_of(episode)).collect::<Result<_, _>>()?;
         if let Some(totals) = &mut self.totals {
             totals.cost += episode.cost;
             for ((sum, cost), constraint) in
                 totals.violations.iter_mut().zip(&constrained).zip(constraints)
             {
-                *sum += (cost - constraint.budget).max(0.0);
+                *sum += cost.map_or(0.0, |cost| (cost - constraint.budget).max(0.0));
             }
         }
         if let Some(first) = &mut self.first {
-            first.add(&constrained, self.constraint_window);
+            first.add(&constrained, &self.constraint_windows);
         }
         let costs = episode.costs.iter().map(|one| (format!("cost/{}", one.name), one.cost));
         let stats = episode.stats.iter().map(|(name, value)| (format!("stats/{name}"), *value));
+        let whole = [
+            ("return", episode.episode_return),
+            ("cost", episode.cost),
+            ("length", f64::from(episode.length)),
+        ];
+        let of_task = episode.task.into_iter().flat_map(|task| {
+            whole.map(|(name, value)| (format!("task/{task}/{name}"), value)).into_iter()
+        });
+        let costs = costs.filter(|(name, _)| name.strip_prefix("cost/") != episode.task);
         self.recent.push_back(Finished {
             episode_return: episode.episode_return,
             cost: episode.cost,
             length: f64::from(episode.length),
             constrained,
-            details: costs.chain(stats).collect(),
+            details: costs.chain(stats).chain(of_task).collect(),
         });
         self.episodes += 1;
         self.fresh += 1;
@@ -130,8 +157,17 @@ impl Watch {
 
     /// Ends what is new: call it when a rollout was learned from.
     pub fn learned(&mut self) {
-        self.waited = if self.fresh == 0 { self.waited + 1 } else { 0 };
+        for index in 0..self.waited.len() {
+            let none = self.fresh_under(index) == 0;
+            self.waited[index] = if none { self.waited[index] + 1 } else { 0 };
+        }
         self.fresh = 0;
+    }
+
+    /// New episodes that have a constraint.
+    fn fresh_under(&self, index: usize) -> usize {
+        let new = self.recent.iter().rev().take(self.fresh);
+        new.filter(|one| one.constrained[index].is_some()).count()
     }
 
     /// Mean over the latest episodes, if there are any.
@@ -141,20 +177,24 @@ impl Watch {
         (count > 0).then(|| self.recent.iter().map(of).sum::<f64>() / count as f64)
     }
 
-    /// Mean of every cost term and statistic.
+    /// Mean of every cost term and statistic over the episodes that have it, and of each of several
+    /// tasks.
     #[must_use]
     pub fn details(&self) -> Vec<(String, f64)> {
-        let Some(last) = self.recent.back() else { return Vec::new() };
-        let mean = |(name, _): &(String, f64)| {
-            let values = self
-                .recent
-                .iter()
-                .flat_map(|one| one.details.iter().filter(|(other, _)| other == name));
-            let (count, sum) =
-                values.fold((0u32, 0.0), |(count, sum), (_, value)| (count + 1, sum + value));
-            (name.clone(), sum / f64::from(count.max(1)))
-        };
-        last.details.iter().map(mean).collect()
+        let mut sums: Vec<(&str, u32, f64)> = Vec::new();
+        for (name, _) in self.recent.iter().rev().flat_map(|one| &one.details) {
+            if !sums.iter().any(|(known, ..)| known == name) {
+                sums.push((name, 0, 0.0));
+            }
+        }
+        for (name, value) in self.recent.iter().flat_map(|one| &one.details) {
+            if let Some((_, count, sum)) = sums.iter_mut().find(|(known, ..)| known == name) {
+                (*count, *sum) = (*count + 1, *sum + value);
+            }
+        }
+        let mean =
+            |(name, count, sum): (&str, u32, f64)| (name.to_string(), sum / f64::from(count));
+        sums.into_iter().map(mean).collect()
     }
 
     /// Cost of an episode that learning aims at when so much of the training is over. Where budgets
@@ -166,57 +206,60 @@ impl Watch {
     }
 
     /// What each constraint costs at present, when so much of the training is over; nothing while
-    /// that is not known yet.
+    /// that is not known of all of them.
     #[must_use]
     pub fn signals(&self, config: &TrainConfig, done: f64, minibatch_costs: &[f64]) -> Vec<Signal> {
         let episode_steps = f64::from(config.episode_steps);
-        let count = self.constraint_window.min(self.recent.len());
         let signal = |index: usize, episode_cost: f64| Signal {
             done,
             ..Signal::steady(episode_cost, self.aim(config, index, done), episode_steps)
         };
-        let latest = |index: usize, count: usize| {
-            self.recent.iter().rev().take(count).map(move |one| one.constrained[index])
-        };
-        let mean = |index: usize, count: usize| latest(index, count).sum::<f64>() / count as f64;
-        let all = 0..config.constraints.len();
-        match config.constraint_statistic {
-            ConstraintStatistic::StepMean => {
-                return minibatch_costs
-                    .iter()
-                    .enumerate()
-                    .map(|(index, cost)| signal(index, cost * episode_steps))
-                    .collect();
-            }
-            _ if count == 0 => return Vec::new(),
-            _ => {}
+        if config.constraint_statistic == ConstraintStatistic::StepMean {
+            return minibatch_costs
+                .iter()
+                .enumerate()
+                .map(|(index, cost)| signal(index, cost * episode_steps))
+                .collect();
         }
-        let weight = if self.fresh == 0 { 0.0 } else { (self.waited + 1) as f64 };
-        let mean_steps =
-            self.recent.iter().rev().take(count).map(|one| one.length).sum::<f64>() / count as f64;
         let once = config.algorithm_settings.multiplier_update == MultiplierUpdate::Rollout;
         let one = |index: usize| {
+            // The latest that have the constraint, the newest first.
+            let latest = || {
+                self.recent
+                    .iter()
+                    .rev()
+                    .filter_map(move |one| one.constrained[index].map(|cost| (cost, one.length)))
+            };
+            let count = self.constraint_windows[index].min(latest().count());
+            if count == 0 {
+                return None;
+            }
+            let mean = |count: usize| {
+                latest().take(count).map(|(cost, _)| cost).sum::<f64>() / count as f64
+            };
+            let fresh = self.fresh_under(index);
+            let weight = if fresh == 0 { 0.0 } else { (self.waited[index] + 1) as f64 };
+            let mean_steps =
+                latest().take(count).map(|(_, length)| length).sum::<f64>() / count as f64;
             let signal = match config.constraint_statistic {
                 // The worst of a few new episodes would say nothing: all that are remembered count,
                 // whenever some are new.
                 ConstraintStatistic::Cvar(share) => {
-                    let costs: Vec<f64> = latest(index, self.recent.len()).collect();
+                    let costs: Vec<f64> = latest().map(|(cost, _)| cost).collect();
                     signal(index, conditional_value_at_risk(&costs, share).unwrap_or(0.0))
                 }
                 _ => {
-                    let fresh = self.fresh.min(self.recent.len());
-                    let fresh_cost =
-                        if once && fresh > 0 { mean(index, fresh) } else { mean(index, count) };
-                    Signal { fresh_cost, ..signal(index, mean(index, count)) }
+                    let fresh_cost = mean(if once && fresh > 0 { fresh } else { count });
+                    Signal { fresh_cost, ..signal(index, mean(count)) }
                 }
             };
-            Signal {
+            Some(Signal {
                 mean_steps: mean_steps.max(1.0),
                 fresh_weight: if once { weight } else { 1.0 },
                 ..signal
-            }
+            })
         };
-        all.map(one).collect()
+        (0..config.constraints.len()).map(one).collect::<Option<_>>().unwrap_or_default()
     }
 }
 
@@ -284,6 +327,7 @@ mod tests {
         }
     }
 
+<<<<<<< HEAD
     /// By hand: two worlds, so the first two episodes are what annealed budgets start at: costs of
     /// 150 and 50, jumps of 1 and 2. Half way to a share of 0.5, the first aim is half way from
     /// 100 to 40, the budget of 50 with a share of 0.8; the second begins below its aim of 2.4.
@@ -313,6 +357,71 @@ mod tests {
         config.learning.budget_annealing = None;
         let written = serde_json::to_string(&Watch::new(&config)).unwrap();
         assert!(!written.contains("first"), "{written}");
+=======
+    /// Two tasks with a budget each: what the one costs is no news of the other, neither in the
+    /// means nor in what is new.
+    #[test]
+    fn each_task_is_held_against_its_own_budget() {
+        let ids = ["RemedyRushLevel1-v0", "VolcanicVentureLevel1-v0"];
+        let env = EnvConfig::new(&ids.join(","));
+        let mut config = TrainConfig::new(AlgorithmKind::PpoPid, Preset::Paper, env).unwrap();
+        assert_eq!(
+            config.constraints,
+            [(ids[0], 5.0), (ids[1], 50.0)]
+                .map(|(id, budget)| Constraint { term: Some(id.into()), budget })
+        );
+        config.sampling.lanes = 3;
+        assert_eq!(config.lanes_under_constraints(), [2, 1]);
+        let of = |task: usize, cost: f64, length: u32| {
+            let whole = hasard_envs::EpisodeCost { name: ids[task], counted: false, cost };
+            Episode { task: Some(ids[task]), costs: vec![whole], length, ..plain(cost, 0.0) }
+        };
+        let mut watch = Watch::new(&config);
+        watch.add(&of(0, 8.0, 525), &config.constraints).unwrap();
+        assert!(watch.signals(&config, 0.0, &[]).is_empty(), "the other is not known yet");
+        watch.add(&of(1, 90.0, 100), &config.constraints).unwrap();
+        watch.add(&of(1, 70.0, 300), &config.constraints).unwrap();
+        watch.add(&of(0, 4.0, 525), &config.constraints).unwrap();
+        let signals = |watch: &Watch| watch.signals(&config, 0.0, &[]);
+        let costs = |watch: &Watch| -> Vec<(f64, f64, f64, f64)> {
+            let facts =
+                |one: &Signal| (one.episode_cost, one.fresh_cost, one.fresh_weight, one.mean_steps);
+            signals(watch).iter().map(facts).collect()
+        };
+        // Two worlds play the first, one the second: so many of the latest count. All four are new.
+        assert_eq!(costs(&watch), [(6.0, 6.0, 1.0, 525.0), (70.0, 80.0, 1.0, 300.0)]);
+        assert_eq!(signals(&watch)[1].episode_budget, 50.0);
+        // 3 over the budget of 5; 40 and 20 over that of 50.
+        assert_eq!(watch.totals.as_ref().unwrap().violations, [3.0, 60.0]);
+        watch.learned();
+        watch.learned();
+        watch.add(&of(0, 1.0, 525), &config.constraints).unwrap();
+        // Of the second there is no news.
+        assert_eq!(costs(&watch), [(2.5, 1.0, 2.0, 525.0), (70.0, 70.0, 0.0, 300.0)]);
+        watch.learned();
+        watch.add(&of(1, 10.0, 525), &config.constraints).unwrap();
+        // Two rollouts had none of it, and this one counts for all three.
+        assert_eq!(costs(&watch)[1], (10.0, 10.0, 3.0, 525.0));
+        let details: std::collections::BTreeMap<String, f64> =
+            watch.details().into_iter().collect();
+        assert_eq!(details[&format!("task/{}/cost", ids[0])], 13.0 / 3.0);
+        assert_eq!(details[&format!("task/{}/length", ids[1])], 925.0 / 3.0);
+        assert!(!details.contains_key(&format!("cost/{}", ids[0])), "{details:?}");
+    }
+
+    /// What older versions wrote of rollouts without new episodes holds for each constraint.
+    #[test]
+    fn older_checkpoints_go_on() {
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoPid, Preset::Paper, EnvConfig::new("test"));
+        config.sampling.lanes = 1;
+        let old = r#"{"recent":[{"episode_return":1.0,"cost":2.0,"length":3.0,"constrained":[2.0],
+            "details":[]}],"episodes":9,"fresh":0,"waited":3,"window":100,"constraint_window":1}"#;
+        let watch: Watch = serde_json::from_str(old).unwrap();
+        let mut watch = watch.resumed(&config).unwrap();
+        watch.add(&episode(6.0, 0.0), &config.constraints).unwrap();
+        let signal = watch.signals(&config, 0.0, &[])[0];
+        assert_eq!((signal.fresh_cost, signal.fresh_weight), (6.0, 4.0));
     }
 
     /// A15: each episode counts as new once, in the rollout that it finished in; rollouts without

@@ -15,6 +15,7 @@ use crate::team::Team;
 struct Sent {
     step: usize,
     lane: usize,
+    task: Option<String>,
     seed: u64,
     episode_return: f64,
     cost: f64,
@@ -35,6 +36,7 @@ impl Sent {
         Sent {
             step: *step,
             lane: episode.lane,
+            task: episode.task.map(str::to_string),
             seed: episode.seed,
             episode_return: episode.episode_return,
             cost: episode.cost,
@@ -57,6 +59,7 @@ impl Sent {
         };
         let cost = |(name, counted, cost)| Some(EpisodeCost { name: known(name)?, counted, cost });
         let episode = Episode {
+            task: self.task.map(|task| known(task).ok_or(())).transpose().ok()?,
             lane: self.lane,
             seed: self.seed,
             episode_return: self.episode_return,

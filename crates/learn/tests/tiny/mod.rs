@@ -128,6 +128,7 @@ impl Environment for Risk {
 
     fn episode(&self) -> Episode {
         Episode {
+            task: None,
             lane: 0,
             seed: self.seed,
             episode_return: self.sums.0,

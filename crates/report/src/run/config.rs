@@ -36,7 +36,7 @@ const NOT_IDENTITY: &[&str] = &[
 /// Keys that are always told beside a result if they are not at their usual value. Of the others,
 /// such as the learning rate, only those are told that tell apart what would otherwise look the
 /// same.
-pub const TOLD: [&str; 12] = [
+pub const TOLD: [&str; 13] = [
     "rules",
     "preset",
     "hard",
@@ -49,6 +49,7 @@ pub const TOLD: [&str; 12] = [
     "cost_scale",
     "curriculum",
     "changed",
+    "tasks",
 ];
 
 /// Where the trainer keeps a value, and other spellings, with the name that this program has for

@@ -76,9 +76,10 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
     found.runs.sort_by(|a, b| a.path.cmp(&b.path));
     // A run named twice (`runs runs/a`) is one run.
     let mut seen = std::collections::BTreeSet::new();
-    found
-        .runs
-        .retain(|run| seen.insert(run.path.canonicalize().unwrap_or_else(|_| run.path.clone())));
+    found.runs.retain(|run| {
+        let path = run.path.canonicalize().unwrap_or_else(|_| run.path.clone());
+        seen.insert((path, run.config.env.clone()))
+    });
     found.warnings.sort();
     found.warnings.dedup();
     if found.runs.is_empty() && found.players.is_empty() {
@@ -96,7 +97,7 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
 fn look(folder: &Path, depth: usize, found: &mut Found) {
     if folder.join("config.json").is_file() {
         match Run::read(folder, &mut found.warnings) {
-            Ok(run) => found.runs.push(run),
+            Ok(run) => found.runs.extend(run.by_task()),
             Err(warning) => found.warnings.push(warning),
         }
         return;

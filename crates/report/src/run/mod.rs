@@ -10,6 +10,7 @@ mod heatmap;
 mod metrics;
 mod safety;
 mod selected;
+mod task;
 
 pub use calibration::{Calibration, read_calibration};
 pub use config::{Config, TOLD, default_budget, scenario_and_level};

@@ -27,6 +27,8 @@ pub struct Evaluation {
     /// Return, cost and length by the names that reports have for them, and cost terms as
     /// `cost/TERM`.
     pub values: Vec<(String, Estimate)>,
+    /// The same of each of several tasks, by its id.
+    pub tasks: Vec<(String, Evaluation)>,
 }
 
 impl Evaluation {
@@ -34,6 +36,11 @@ impl Evaluation {
     #[must_use]
     pub fn get(&self, metric: &str) -> Option<Estimate> {
         self.values.iter().find(|(name, _)| name == metric).map(|(_, estimate)| *estimate)
+    }
+
+    /// That of one of several tasks.
+    pub(super) fn of_task(&self, task: &str) -> Option<Evaluation> {
+        self.tasks.iter().find(|(name, _)| name == task).map(|(_, own)| own.clone())
     }
 }
 
@@ -86,7 +93,10 @@ fn evaluation(value: &Value) -> Option<Evaluation> {
             values.push((format!("cost/{term}"), cost));
         }
     }
-    Some(Evaluation { episodes, values })
+    let tasks = value.get("tasks").and_then(Value::as_array).into_iter().flatten();
+    let task = |one: &Value| Some((one.get("task")?.as_str()?.to_owned(), evaluation(one)?));
+    let tasks = tasks.filter_map(task).collect();
+    Some(Evaluation { episodes, values, tasks })
 }
 
 #[cfg(test)]

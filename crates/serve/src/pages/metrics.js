@@ -6,7 +6,7 @@ export const USUAL = ['return_mean', 'cost_mean'];
 const EVALUATED = { return_mean: ['eval/return_mean', 'eval/return_ci95'], cost_mean: ['eval/cost_mean', 'eval/cost_ci95'], length_mean: ['eval/length_mean', 'eval/length_ci95'] };
 const TITLES = { return_mean: 'Return', cost_mean: 'Cost', length_mean: 'Length of episodes', fps: 'Frames a second', multiplier: 'Lagrange multiplier', entropy: 'Entropy' };
 
-export const evaluation_of = (name) => EVALUATED[name] ?? (name.startsWith('cost/') ? [`eval/${name}`, ''] : []);
+export const evaluation_of = (name) => EVALUATED[name] ?? (/^(cost|task)\//.test(name) ? [`eval/${name}`, ''] : []);
 export const title_of = (name) => TITLES[name] ?? name.replace(/^(stats|eval)\//, (whole) => (whole === 'eval/' ? 'evaluation: ' : '')).replaceAll('_', ' ');
 
 // What is drawn at first: return, cost, the multiplier of a run that has one (else how well the critic predicts), how certain the policy is.

@@ -24,6 +24,7 @@ const GROUPS: [(&str, &[&str]); 9] = [
         "evaluation",
         &["eval/return_mean", "eval/cost_mean", "eval/over_budget", "eval/cost_cvar10", "eval/*"],
     ),
+    ("tasks", &["task/*"]),
     (
         "constraints",
         &[

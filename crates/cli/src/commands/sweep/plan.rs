@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::settings::Elsewhere;
 use hasard_engine::simd::Simd;
-use hasard_envs::{EnvOptions, VecEnv};
+use hasard_envs::EnvOptions;
 use hasard_learn::config::{EnvConfig, TrainConfig};
 use hasard_learn::runs::measure::measure;
 use hasard_sweep::{Job, State};
@@ -139,7 +139,7 @@ impl Plan {
 
 /// Frames a second of a run's loop, measured for some seconds, and the bytes of its checkpoints.
 fn tried(config: &TrainConfig, options: &EnvOptions, seconds: f64) -> Result<(f64, u64), Failure> {
-    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, options, worlds);
+    let make = |env: &EnvConfig, worlds| env.worlds(options, worlds);
     let kernels = Simd::chosen().map_err(Failure::bad)?;
     let loops = measure(kernels, config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
     let rate = loops.steps_per_second * f64::from(config.env.frame_skip);

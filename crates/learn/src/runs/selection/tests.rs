@@ -14,6 +14,7 @@ fn config() -> TrainConfig {
 /// Episodes whose costs lie a little around their mean.
 fn episodes(episode_return: f64, cost: f64, count: usize) -> Vec<Episode> {
     let one = |index: usize| Episode {
+        task: None,
         lane: 0,
         seed: 0,
         episode_return,
