@@ -170,7 +170,7 @@ impl Grid {
             .flat_map(|scenario| {
                 if scenarios().contains(&scenario.as_str()) {
                     self.levels.iter().map(|level| format!("{scenario}Level{level}-v0")).collect()
-                } else if scenario.ends_with(".toml") {
+                } else if scenario.ends_with(".toml") && !scenario.contains(',') {
                     // The file itself is its first level.
                     let of_level = |level: &u32| match level {
                         1 => scenario.clone(),
@@ -221,15 +221,21 @@ impl Grid {
                 && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
                 && !text.starts_with(['-', '.'])
         };
-        for environment in &self.scenarios {
-            let path = environment.rsplit_once('#').map_or(environment.as_str(), |(path, _)| path);
+        let like_an_id = |environment: &str| {
+            let path = environment.rsplit_once('#').map_or(environment, |(path, _)| path);
             let own_file = path.ends_with(".toml")
                 && !environment.starts_with('-')
                 && !environment.contains(char::is_control);
-            let like_an_id = environment.contains("-v") && plain(environment) || own_file;
-            if !scenarios().contains(&environment.as_str()) && !like_an_id {
+            environment.contains("-v") && plain(environment) || own_file
+        };
+        for environment in &self.scenarios {
+            // Several ids make one environment of several tasks.
+            let known = scenarios().contains(&environment.as_str())
+                || environment.split(',').all(like_an_id);
+            if !known {
                 return Err(format!(
-                    "unknown scenario `{environment}`; one of {}, an id of `hasard envs`, or the file of an own task",
+                    "unknown scenario `{environment}`; one of {}, an id of `hasard envs`, the file of an own task, or several ids or files \
+                     with commas between",
                     scenarios().join(", ")
                 ));
             }

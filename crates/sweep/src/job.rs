@@ -82,7 +82,7 @@ impl Job {
                 names.push(named);
             }
         }
-        let mut directory = out.join(environment).join(algorithm);
+        let mut directory = out.join(environment.replace(',', "+")).join(algorithm);
         let options = names.join(",");
         if !options.is_empty() {
             directory.push(&options);

@@ -475,4 +475,7 @@ fn files_of_own_tasks_have_levels() {
     assert_eq!(grid(&["a.toml"], &[1]).environments(), ["a.toml"]);
     assert_eq!(grid(&["a.toml"], &[1, 3]).environments(), ["a.toml", "a.toml#3"]);
     assert_eq!(grid(&["a.toml#2"], &[1, 3]).environments(), ["a.toml#2"]);
+    // Several tasks are one environment, whatever the levels of others.
+    let several = "RemedyRushLevel1-v0,a.toml#2,b.toml";
+    assert_eq!(grid(&[several], &[1, 3]).environments(), [several]);
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 /// Groups in the order in which they are listed, with their numbers in order; one that ends in `*`
 /// stands for all that begin so.
-const GROUPS: [(&str, &[&str]); 9] = [
+const GROUPS: [(&str, &[&str]); 10] = [
     (
         "training episodes",
         &[
