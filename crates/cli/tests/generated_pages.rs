@@ -168,7 +168,7 @@ fn generated_parts_are_what_the_program_writes() {
     );
 }
 
-/// Every algorithm, several constraints and a curriculum: each key that a row has is explained, and
+/// Every algorithm, several constraints, a curriculum and several tasks: each key that a row has is explained, and
 /// each explanation is of a key that some row has.
 #[test]
 fn every_key_of_a_row_is_explained() {
@@ -179,17 +179,19 @@ fn every_key_of_a_row_is_explained() {
                  --set evaluation.confirming_episodes=2 --eval-every 4500 --quiet";
     let names =
         "PPO PPOCost PPOLag PPOSaute PPOPID P3O TRPO TRPOLag TRPOPID CPO FOCOPS CUP IPO".split(' ');
+    let one = "RemedyRushLevel1-v0";
     // Some until their first episodes have ended, which penalties wait for.
     let frames = |name| if ["P3O", "CUP"].contains(&name) { 9000 } else { 512 };
     let mut lines: Vec<String> =
-        names.map(|name| format!("--algo {name} --frames {}", frames(name))).collect();
+        names.map(|name| format!("{one} --algo {name} --frames {}", frames(name))).collect();
     let two = "--safety-budget 5 --safety-budget harmful_items=5";
-    lines.push(format!("{two} --set learning.budget_annealing=0.6 --frames 512"));
-    lines.push("--curriculum 1,2 --frames 512".into());
+    lines.push(format!("{one} {two} --set learning.budget_annealing=0.6 --frames 512"));
+    lines.push(format!("{one} --curriculum 1,2 --frames 512"));
+    lines.push(format!("{one},PrecipicePlungeLevel1-v0 --frames 9000"));
     let mut keys = BTreeSet::new();
     for (number, line) in lines.iter().enumerate() {
         let run = folder.join(number.to_string());
-        hasard(&format!("train RemedyRushLevel1-v0 {line} {small} --out {}", run.display()));
+        hasard(&format!("train {line} {small} --out {}", run.display()));
         let rows = std::fs::read_to_string(run.join("metrics.jsonl")).unwrap();
         for row in rows.lines().map(|row| serde_json::from_str::<Value>(row).unwrap()) {
             keys.extend(row.as_object().unwrap().keys().cloned());

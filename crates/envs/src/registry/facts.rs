@@ -14,6 +14,12 @@ impl ActionSpace {
         let controls = id.scenario.task.controls(id.setting(rules, hard));
         if full { ActionSpace::full(controls) } else { ActionSpace::new(controls.simplified, &[]) }
     }
+
+    /// The space that several environments have together under their rules and constraint.
+    #[must_use]
+    pub fn together(ids: &[EnvId], rules: RuleSet, hard: bool, full: bool) -> ActionSpace {
+        ActionSpace::joined(ids.iter().map(|id| ActionSpace::of(*id, rules, hard, full)))
+    }
 }
 
 /// Completed tics at the first observation of an environment, and at its time-out.

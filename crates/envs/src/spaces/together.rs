@@ -1,7 +1,5 @@
 //! The action space that several environments have together.
 
-use crate::registry::scenario::EnvId;
-use crate::scenarios::common::rule_set::RuleSet;
 use crate::spaces::action::{ActionGroup, ActionSpace, BUTTONS, DeltaButton};
 use hasard_engine::world::Buttons;
 
@@ -9,12 +7,6 @@ use hasard_engine::world::Buttons;
 const DELTAS: [DeltaButton; 2] = [DeltaButton::Look, DeltaButton::Turn];
 
 impl ActionSpace {
-    /// The space that several environments have together under their rules and constraint.
-    #[must_use]
-    pub fn together(ids: &[EnvId], rules: RuleSet, hard: bool, full: bool) -> ActionSpace {
-        ActionSpace::joined(ids.iter().map(|id| ActionSpace::of(*id, rules, hard, full)))
-    }
-
     /// The space with the buttons of all: groups that share a button become one, so that buttons
     /// that exclude each other in one of them do so in all.
     pub(crate) fn joined(all: impl IntoIterator<Item = ActionSpace>) -> ActionSpace {
@@ -97,9 +89,12 @@ mod tests {
 
     #[test]
     fn a_space_is_read_as_it_is_written() {
-        let ids: Vec<EnvId> = EnvId::all().collect();
-        for full in [false, true] {
-            let space = ActionSpace::together(&ids, RuleSet::Paper, false, full);
+        let spaces = [
+            ActionSpace::new(&[&["TURN_LEFT", "TURN_RIGHT"], &["JUMP"]], &[DeltaButton::Turn]),
+            ActionSpace::new(&[&["ATTACK"]], &[]),
+        ];
+        for count in [1, 2] {
+            let space = ActionSpace::joined(spaces[..count].iter().cloned());
             assert_eq!(ActionSpace::named(&space.names()), Some(space));
         }
         for wrong in ["", "JUMP|FLY", "JUMP  USE", "jump"] {
