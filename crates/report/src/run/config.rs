@@ -153,6 +153,12 @@ impl Config {
             })
         };
         let env = take("env")?;
+        let usual_of_task = |one: &Constraint| {
+            let task = one.term.as_deref().filter(|term| env.split(',').any(|id| id == *term));
+            task.is_some_and(|task| {
+                one.budget == default_budget(&scenario_and_level(task).0, false)
+            })
+        };
         let algo = take("algo")?;
         let seed = take("seed")?;
         let seed = seed
@@ -167,6 +173,10 @@ impl Config {
             "TRPOLag" if damping > Some(0.0) => "TRPOPID".into(),
             _ => algo,
         };
+        // The budgets that several tasks have of themselves need not be said.
+        if constraints.iter().all(usual_of_task) {
+            options.remove("constraints");
+        }
         let (scenario, mut level) = scenario_and_level(&env);
         // A curriculum ends in its last level, and that is what its results are results of.
         if let Some(last) = options

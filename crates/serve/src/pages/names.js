@@ -2,6 +2,8 @@
 
 // `VolcanicVentureLevel1-v0` as "Volcanic Venture 1"; an id of another shape stays.
 export function env_name(id) {
+  // Several tasks of one run.
+  if (id.includes(',')) return id.split(',').map(env_name).join(' + ');
   const found = /^(?:hasard\/)?([A-Z][A-Za-z]*)Level(\d)-v(\d+)$/.exec(id);
   if (!found) return id;
   const words = found[1].replace(/([a-z])([A-Z])/g, '$1 $2').replace(/^Detonators /, 'Detonator’s ');

@@ -130,6 +130,7 @@ export function run(main, query) {
       if (picked.dataset.known !== String(detail.metrics.length)) { picked.dataset.known = detail.metrics.length; show_picker(); }
       await load();
       heat.set(detail.heatmaps);
+      if (me.env.includes(',')) heat.caption.textContent = 'Tasks on different maps have no heatmap together.';
     } catch (error) {
       title.textContent = error.message;
       settled = null;
