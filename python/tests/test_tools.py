@@ -2,6 +2,7 @@
 
 import importlib.util
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -111,3 +112,32 @@ def test_a_recipe_names_the_extra_that_has_all_that_it_imports(recipe):
     if others:
         assert named, f"imports {others}, and its docstring names no extra"
         assert others <= {re.split(r"[\[>=<]", one)[0] for one in extras[named[1]]}
+
+
+def test_small_copies_of_runs_draw_the_same_tables(tmp_path):
+    """A real run of milliseconds, its copy, and the report of both."""
+    hasard = shutil.which("hasard") or Path(sys.executable).with_name("hasard")
+    assert Path(hasard).exists(), "the package brings the program"
+
+    def run(*words):
+        return subprocess.run([hasard, *words], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+
+    small = "--envs 4 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 --size 64x48 --quiet"
+    small += " --set evaluation.episodes=2 --set evaluation.confirming_episodes=2 --set reporting.report_seconds=0"
+    train = "train RemedyRushLevel1 --frames 20000 --eval-every 10000 --out runs/one/seed3 --seed 3"
+    run(*train.split(), *small.split())
+    run(*"train RemedyRushLevel1 --frames 512 --eval-every 0 --out runs/unjudged".split(), *small.split())
+    (tmp_path / "runs/random-RemedyRushLevel1-v0-paper.jsonl").write_text(run(*"rollout RemedyRushLevel1 --episodes 3 --json".split()))
+    keep = tool("keep_runs").main
+    keep([str(tmp_path / "runs"), str(tmp_path / "copies"), "--hasard", str(hasard), "--agents", "3"])
+    copy = tmp_path / "copies/one/seed3"
+    assert (copy / "selected.agent").stat().st_size > 1000
+    assert not (tmp_path / "copies/unjudged").exists()
+    assert 3 < len((copy / "metrics.jsonl").read_text().splitlines()) <= 105
+    tables = [run("report", folder, "-o", f"{folder}_report") and (tmp_path / f"{folder}_report/report.md").read_text() for folder in ("runs", "copies")]
+    selected = [table.split("## Selected checkpoints")[1].split("\n## ")[0] for table in tables]
+    assert "PPOPID" in selected[0] and selected[0] == selected[1]
+    # A second time nothing is done again.
+    before = (copy / "config.json").stat().st_mtime_ns
+    keep([str(tmp_path / "runs"), str(tmp_path / "copies")])
+    assert (copy / "config.json").stat().st_mtime_ns == before
