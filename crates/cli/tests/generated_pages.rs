@@ -186,6 +186,9 @@ fn every_key_of_a_row_is_explained() {
         names.map(|name| format!("{one} --algo {name} --frames {}", frames(name))).collect();
     let two = "--safety-budget 5 --safety-budget harmful_items=5";
     lines.push(format!("{one} {two} --set learning.budget_annealing=0.6 --frames 512"));
+    let predicted = "--set learning.auxiliary_depth=0.1 --set learning.auxiliary_labels=0.1 \
+                     --set learning.value_phase=1";
+    lines.push(format!("{one} {predicted} --frames 512"));
     lines.push(format!("{one} --curriculum 1,2 --frames 512"));
     lines.push(format!("{one},PrecipicePlungeLevel1-v0 --frames 9000"));
     let mut keys = BTreeSet::new();

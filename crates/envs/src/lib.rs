@@ -56,6 +56,7 @@ pub use interface::batch::{Batch, Episode, EpisodeCost, episode_costs};
 pub use interface::buffer::{Buffer, Memory};
 pub use interface::environment::Environment;
 pub use interface::happening::{DAMAGE_CAUSES, Happening, HappeningKind};
+pub use interface::insight::{self, Insight};
 pub use interface::step::{CostTerm, Step};
 pub use options::{EnvOptions, Layout, ObservationKind};
 pub use policies::policy::{Policy, PolicyRun};

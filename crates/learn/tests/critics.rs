@@ -208,6 +208,7 @@ fn runs_resume_exactly_with_each_of_it() {
     let anew = |mut config: TrainConfig| {
         (config.learning.recompute_advantages, config.network.policy_scale) = (true, 0.01);
         config.learning.epochs = 3;
+        config.learning.value_phase = Some(2);
         config
     };
     for (name, mut config) in [

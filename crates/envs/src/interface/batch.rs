@@ -33,11 +33,16 @@ pub struct Batch {
     pub terminated: Buffer<bool>,
     /// Out: the episode ended by time-out, `[lanes]`.
     pub truncated: Buffer<bool>,
+    /// Out: what is shown beside observations, `[lanes, bytes]`; empty unless
+    /// [`crate::VecOptions::insight`] asks for something.
+    pub insight: Buffer<u8>,
     /// Out: the lanes of this batch whose true last observation follows, ascending.
     pub final_lanes: Vec<usize>,
     /// Out: the true last observations of those lanes, `[final lanes, ..observation shape]`: one
     /// array.
     pub final_observations: Vec<u8>,
+    /// Out: the same of what is shown beside observations, `[final lanes, bytes]`.
+    pub final_insight: Vec<u8>,
     /// Out: what happened in the step, of lane after lane, before any reset; see
     /// [`crate::EnvOptions::events`].
     pub happenings: Vec<Happening>,
@@ -68,6 +73,14 @@ impl Batch {
     pub fn finals(&self) -> impl Iterator<Item = (usize, &[u8])> {
         let size = self.final_observations.len() / self.final_lanes.len().max(1);
         self.final_lanes.iter().copied().zip(self.final_observations.chunks_exact(size.max(1)))
+    }
+
+    /// What is shown beside the last observation of the lane that stands at a place among those
+    /// that have one.
+    #[must_use]
+    pub fn final_insight(&self, place: usize) -> &[u8] {
+        let bytes = self.final_insight.len() / self.final_lanes.len().max(1);
+        &self.final_insight[place * bytes..(place + 1) * bytes]
     }
 
     /// Whether each lane has a true last observation, `[lanes]`.

@@ -2,6 +2,7 @@
 
 use crate::interface::batch::Episode;
 use crate::interface::happening::Happening;
+use crate::interface::insight::Insight;
 use crate::interface::step::{CostTerm, Step};
 use crate::spaces::action::ActionSpace;
 
@@ -32,6 +33,13 @@ pub trait Environment: Send {
     /// Writes the observation of the present state, as long as the product of the observation
     /// shape.
     fn observe(&mut self, out: &mut [u8]);
+
+    /// As [`observe`](Environment::observe), and writes what else is shown of the state, a row of
+    /// [`Insight::bytes`]: zeros where there is nothing to show.
+    fn observe_with(&mut self, out: &mut [u8], _what: Insight, insight: &mut [u8]) {
+        insight.fill(0);
+        self.observe(out);
+    }
 
     /// Where the player stands, in map units; the origin where there are no places.
     fn position(&self) -> [i32; 2] {

@@ -4,4 +4,5 @@ pub mod batch;
 pub mod buffer;
 pub mod environment;
 pub mod happening;
+pub mod insight;
 pub mod step;

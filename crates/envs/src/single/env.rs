@@ -4,11 +4,13 @@ use crate::error::EnvError;
 use crate::interface::batch::{Episode, episode_costs};
 use crate::interface::environment::Environment;
 use crate::interface::happening::Happening;
+use crate::interface::insight::Insight;
 use crate::interface::step::{CostTerm, Step};
 use crate::options::EnvOptions;
 use crate::registry::scenario::EnvId;
 use crate::scenarios::common::outcome::MOST_TERMS;
 use crate::single::blueprint::{Blueprint, view};
+use crate::single::lookout::Ends;
 use crate::single::observer::Eye;
 use crate::single::simulation::Game;
 use crate::spaces::action::{ActionSpace, Move};
@@ -67,7 +69,9 @@ impl Env {
     fn of(blueprint: Arc<Blueprint>) -> Env {
         let game = blueprint.template.clone();
         let (scene, view) = (Arc::clone(&blueprint.scene), Arc::clone(&blueprint.view));
-        let eye = Eye::new(scene, view, &blueprint.options, blueprint.render_options());
+        let looks = blueprint.render_options();
+        let ends = Ends::of(&game.world);
+        let eye = Eye::new(scene, view, &blueprint.options, looks, ends);
         let mut env = Env {
             blueprint,
             game,
@@ -217,6 +221,15 @@ impl Env {
     /// If `out` is not as long as the product of the observation shape.
     pub fn observe(&mut self, out: &mut [u8]) {
         self.eye.observe(&self.game.world, out);
+    }
+
+    /// As [`Env::observe`], and writes what learners see beside it.
+    ///
+    /// # Panics
+    /// If `insight` is not [`Insight::bytes`] long.
+    pub fn observe_with(&mut self, out: &mut [u8], what: Insight, insight: &mut [u8]) {
+        assert_eq!(insight.len(), what.bytes(), "a row of {} bytes is needed", what.bytes());
+        self.eye.observe_with(&self.game.world, out, what, insight);
     }
 
     /// Draws the present as the observation's size shows it, with depth and labels where asked for,
@@ -375,6 +388,10 @@ impl Environment for Env {
 
     fn observe(&mut self, out: &mut [u8]) {
         Env::observe(self, out);
+    }
+
+    fn observe_with(&mut self, out: &mut [u8], what: Insight, insight: &mut [u8]) {
+        Env::observe_with(self, out, what, insight);
     }
 
     fn position(&self) -> [i32; 2] {

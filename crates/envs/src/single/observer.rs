@@ -1,6 +1,8 @@
 //! What an environment shows its learner: frames drawn, laid out and stacked.
 
+use crate::interface::insight::Insight;
 use crate::options::{EnvOptions, Layout, ObservationKind};
+use crate::single::lookout::{self, Ends, Seen};
 use hasard_engine::render::{
     Buffers, FrameScratch, RenderOptions, Renderer, Scene, SegmentationColours, View,
 };
@@ -27,6 +29,8 @@ pub(crate) struct Eye {
     stack: usize,
     /// The last frames, where more than one is shown: a ring of equal parts.
     memory: Vec<u8>,
+    /// The map's ends.
+    ends: Ends,
     /// Part of the ring that the next frame goes to; it holds the oldest.
     oldest: usize,
 }
@@ -37,6 +41,7 @@ impl Eye {
         view: Arc<View>,
         options: &EnvOptions,
         looks: RenderOptions,
+        ends: Ends,
     ) -> Eye {
         let mut renderer = Renderer::new(scene, view);
         renderer.set_options(looks);
@@ -64,6 +69,7 @@ impl Eye {
             } else {
                 Vec::new()
             },
+            ends,
             oldest: 0,
         }
     }
@@ -94,7 +100,8 @@ impl Eye {
         if self.stack > 1 {
             let size = self.memory.len() / self.stack;
             let mut memory = std::mem::take(&mut self.memory);
-            self.draw(world, &mut memory[self.oldest * size..(self.oldest + 1) * size]);
+            let newest = self.oldest * size..(self.oldest + 1) * size;
+            self.draw(world, &mut memory[newest], Insight::default(), &mut []);
             self.memory = memory;
             self.oldest = (self.oldest + 1) % self.stack;
         }
@@ -103,7 +110,7 @@ impl Eye {
     /// Writes the observation.
     pub fn observe(&mut self, world: &World, out: &mut [u8]) {
         if self.stack == 1 {
-            self.draw(world, out);
+            self.draw(world, out, Insight::default(), &mut []);
             return;
         }
         let size = self.memory.len() / self.stack;
@@ -126,12 +133,31 @@ impl Eye {
         }
     }
 
-    /// Draws one frame.
-    fn draw(&mut self, world: &World, out: &mut [u8]) {
-        let depth = self.kind == ObservationKind::RgbDepth;
-        let labels = self.kind == ObservationKind::Segmented;
-        let (kind, layout, colours) = (self.kind, self.layout, &self.colours);
-        let write = |renderer: &Renderer| match (kind, layout) {
+    /// Writes the observation and what learners see beside it.
+    pub fn observe_with(&mut self, world: &World, out: &mut [u8], what: Insight, row: &mut [u8]) {
+        if self.stack == 1 {
+            self.draw(world, out, what, row);
+            return;
+        }
+        // The frames are drawn already, without what is asked for now.
+        self.observe(world, out);
+        let [depth, labels] = lookout::needs(what);
+        let (ends, width) = (self.ends, self.frame[1]);
+        SCRATCH.with_borrow_mut(|scratch| {
+            self.renderer.render_then(scratch, world, 0, Buffers { depth, labels }, |renderer| {
+                lookout::write(what, world, &ends, Seen { renderer, width }, row);
+            });
+        });
+    }
+
+    /// Draws one frame, and writes what else is asked for.
+    fn draw(&mut self, world: &World, out: &mut [u8], what: Insight, row: &mut [u8]) {
+        let [more_depth, more_labels] = lookout::needs(what);
+        let depth = more_depth || self.kind == ObservationKind::RgbDepth;
+        let labels = more_labels || self.kind == ObservationKind::Segmented;
+        let (kind, layout, colours, ends) = (self.kind, self.layout, &self.colours, self.ends);
+        let width = self.frame[1];
+        let mut write = |renderer: &Renderer| match (kind, layout) {
             (ObservationKind::Rgb, Layout::Hwc) => renderer.write_rgb_hwc(out),
             (ObservationKind::Rgb, Layout::Chw) => renderer.write_rgb_chw(out),
             (ObservationKind::Grey, _) => renderer.write_grey(out),
@@ -146,7 +172,12 @@ impl Eye {
         };
         let buffers = Buffers { depth, labels };
         SCRATCH.with_borrow_mut(|scratch| {
-            self.renderer.render_then(scratch, world, 0, buffers, write)
+            self.renderer.render_then(scratch, world, 0, buffers, |renderer| {
+                write(renderer);
+                if what != Insight::default() {
+                    lookout::write(what, world, &ends, Seen { renderer, width }, row);
+                }
+            });
         });
     }
 

@@ -27,6 +27,7 @@ impl Shape {
             ("cost_terms", batch.cost_terms.len(), lanes * self.cost_terms.len()),
             ("statistics", batch.statistics.len(), lanes * statistics),
             ("positions", batch.positions.len(), lanes),
+            ("insight", batch.insight.len(), lanes * self.options.insight.bytes()),
             ("terminated", batch.terminated.len(), lanes),
             ("truncated", batch.truncated.len(), lanes),
         ] {

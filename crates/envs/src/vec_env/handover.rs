@@ -70,6 +70,7 @@ struct Contents {
     cost_terms: Raw<f32>,
     statistics: Raw<f64>,
     positions: Raw<[i32; 2]>,
+    insight: Raw<u8>,
     terminated: Raw<bool>,
     truncated: Raw<bool>,
 }
@@ -144,6 +145,7 @@ impl Slot {
             cost_terms: Raw::none(),
             statistics: Raw::none(),
             positions: Raw::none(),
+            insight: Raw::none(),
             terminated: Raw::none(),
             truncated: Raw::none(),
         };
@@ -175,6 +177,7 @@ impl Slot {
         contents.cost_terms = Raw::of(&mut batch.cost_terms);
         contents.statistics = Raw::of(&mut batch.statistics);
         contents.positions = Raw::of(&mut batch.positions);
+        contents.insight = Raw::of(&mut batch.insight);
         contents.terminated = Raw::of(&mut batch.terminated);
         contents.truncated = Raw::of(&mut batch.truncated);
         self.state.store(BUSY, Ordering::Release);
@@ -220,6 +223,7 @@ impl Slot {
                 cost_terms: contents.cost_terms.part(index, count),
                 statistics: contents.statistics.part(index, count),
                 positions: contents.positions.part(index, count),
+                insight: contents.insight.part(index, count),
                 terminated: contents.terminated.part(index, count),
                 truncated: contents.truncated.part(index, count),
             }

@@ -2,8 +2,8 @@
 
 use super::chosen::Restart;
 use super::lane_state::LaneState;
-use super::options::{Autoreset, FinalObservations};
-use crate::{Batch, Environment, Episode, Happening, Step};
+use super::options::{Autoreset, FinalObservations, VecOptions};
+use crate::{Batch, Environment, Episode, Happening, Insight, Step};
 use hasard_engine::math::Rng;
 
 /// One lane's parts of a batch's buffers, or those of several neighbouring lanes.
@@ -16,6 +16,7 @@ pub(super) struct LaneSlices<'a> {
     pub cost_terms: &'a mut [f32],
     pub statistics: &'a mut [f64],
     pub positions: &'a mut [[i32; 2]],
+    pub insight: &'a mut [u8],
     pub terminated: &'a mut [bool],
     pub truncated: &'a mut [bool],
 }
@@ -32,6 +33,7 @@ impl<'a> LaneSlices<'a> {
             cost_terms: &mut batch.cost_terms,
             statistics: &mut batch.statistics,
             positions: &mut batch.positions,
+            insight: &mut batch.insight,
             terminated: &mut batch.terminated,
             truncated: &mut batch.truncated,
         }
@@ -58,6 +60,7 @@ impl<'a> LaneSlices<'a> {
             cost_terms: front(&mut self.cost_terms, count),
             statistics: front(&mut self.statistics, count),
             positions: front(&mut self.positions, count),
+            insight: front(&mut self.insight, count),
             terminated: front(&mut self.terminated, count),
             truncated: front(&mut self.truncated, count),
         }
@@ -97,8 +100,8 @@ impl<'a> LaneSlices<'a> {
 /// What lanes report beside their buffers.
 #[derive(Default)]
 pub(super) struct Outbox {
-    /// (lane of the batch, observation).
-    pub final_observations: Vec<(usize, Vec<u8>)>,
+    /// (lane of the batch, observation, what is shown beside it).
+    pub final_observations: Vec<(usize, Vec<u8>, Vec<u8>)>,
     pub episodes: Vec<Episode>,
     /// (lane of the batch, what happened there).
     pub happenings: Vec<(usize, Vec<Happening>)>,
@@ -124,10 +127,11 @@ impl Outbox {
 
     /// Lays the reports into a batch, in the order of lanes: they were stepped in any order.
     pub fn deliver(mut self, batch: &mut Batch) {
-        self.final_observations.sort_by_key(|&(lane, _)| lane);
-        for (lane, observation) in self.final_observations {
+        self.final_observations.sort_by_key(|&(lane, ..)| lane);
+        for (lane, observation, insight) in self.final_observations {
             batch.final_lanes.push(lane);
             batch.final_observations.extend_from_slice(&observation);
+            batch.final_insight.extend_from_slice(&insight);
         }
         self.happenings.sort_by_key(|&(lane, _)| lane);
         // First how many each lane has, then where they end.
@@ -180,6 +184,8 @@ pub(super) struct Lane {
     /// Number that decides its seeds.
     number: u64,
     env: Box<dyn Environment>,
+    /// What is shown beside observations.
+    insight: Insight,
     /// Seeds of the episodes to come.
     seeds: Rng,
     /// The running episode: seed and actions so far, enough to repeat it.
@@ -193,16 +199,17 @@ pub(super) struct Lane {
 }
 
 impl Lane {
-    pub fn new(index: usize, number: u64, seed: u64, env: Box<dyn Environment>) -> Lane {
+    pub fn new(index: usize, number: u64, options: VecOptions, env: Box<dyn Environment>) -> Lane {
         // Room for an episode at frame skip 1, so that stepping never allocates.
         let (groups, deltas) = (env.action_space().groups.len(), env.action_space().deltas.len());
         let (actions, deltas) =
             (Vec::with_capacity(2104 * groups), Vec::with_capacity(2104 * deltas));
-        let seeds = Rng::for_lane(seed, number);
+        let seeds = Rng::for_lane(options.seed, number);
         Lane {
             index,
             number,
             env,
+            insight: options.insight,
             seeds,
             seed: 0,
             actions,
@@ -278,7 +285,16 @@ impl Lane {
     fn show(&mut self, mut slices: LaneSlices) {
         let step = Step { reward: 0.0, cost: 0.0, ..self.ended.unwrap_or_default() };
         slices.note(step, &*self.env, false, &mut self.scratch);
-        self.env.observe(slices.observations);
+        self.observe(slices.observations, slices.insight);
+    }
+
+    /// Writes what is seen, and what is shown beside it, if anything is asked for.
+    fn observe(&mut self, observation: &mut [u8], insight: &mut [u8]) {
+        if insight.is_empty() {
+            self.env.observe(observation);
+        } else {
+            self.env.observe_with(observation, self.insight, insight);
+        }
     }
 
     /// Steps the lane by its action. `index` is its number within the batch.
@@ -315,11 +331,12 @@ impl Lane {
                 || (step.truncated && !step.terminated);
             if keep {
                 let mut last = vec![0; slices.observations.len()];
-                self.env.observe(&mut last);
-                outbox.final_observations.push((index, last));
+                let mut insight = vec![0; slices.insight.len()];
+                self.observe(&mut last, &mut insight);
+                outbox.final_observations.push((index, last, insight));
             }
             self.next_episode();
         }
-        self.env.observe(slices.observations);
+        self.observe(slices.observations, slices.insight);
     }
 }

@@ -11,7 +11,7 @@
 use crate::own::intern;
 use crate::{
     ActionGroup, ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, Environment, Episode,
-    EpisodeCost, Happening, Step,
+    EpisodeCost, Happening, Insight, Step,
 };
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -264,6 +264,10 @@ impl Environment for MixedLane {
 
     fn observe(&mut self, out: &mut [u8]) {
         self.env.observe(out);
+    }
+
+    fn observe_with(&mut self, out: &mut [u8], what: Insight, insight: &mut [u8]) {
+        self.env.observe_with(out, what, insight);
     }
 
     fn position(&self) -> [i32; 2] {

@@ -1,6 +1,6 @@
 //! How a batch of worlds is made.
 
-use crate::EnvError;
+use crate::{EnvError, Insight};
 
 /// What follows an episode's end.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -47,6 +47,8 @@ pub struct VecOptions {
     pub final_observations: FinalObservations,
     /// Every step tells the scenario's statistics, not only an episode's end.
     pub statistics: bool,
+    /// What is shown beside observations, to learners.
+    pub insight: Insight,
 }
 
 impl Default for VecOptions {
@@ -60,6 +62,7 @@ impl Default for VecOptions {
             autoreset: Autoreset::default(),
             final_observations: FinalObservations::default(),
             statistics: false,
+            insight: Insight::default(),
         }
     }
 }

@@ -129,7 +129,7 @@ impl VecEnv {
             let env = make(index)?;
             alike(lanes.first().map_or(&*env, Lane::env), &*env, index)?;
             let number = options.first_lane.wrapping_add(index as u64);
-            lanes.push(Lane::new(index, number, options.seed, env));
+            lanes.push(Lane::new(index, number, options, env));
         }
         let env = lanes[0].env();
         let shape = Shape {
@@ -241,6 +241,7 @@ impl VecEnv {
             cost_terms: vec![0.0; lanes * self.shape.cost_terms.len()].into(),
             statistics: vec![0.0; lanes * statistics].into(),
             positions: vec![[0, 0]; lanes].into(),
+            insight: vec![0; lanes * self.shape.options.insight.bytes()].into(),
             terminated: vec![false; lanes].into(),
             truncated: vec![false; lanes].into(),
             ..Batch::default()
@@ -400,6 +401,7 @@ impl VecEnv {
         batch.episodes.clear();
         batch.final_lanes.clear();
         batch.final_observations.clear();
+        batch.final_insight.clear();
         batch.happenings.clear();
         self.crew.give(slot, batch, task);
     }

@@ -97,6 +97,7 @@ impl Case {
             critics: vec![critic(0), critic(1)],
             mean_costs: vec![],
             exploration_coefficient: self.exploration,
+            shown: vec![],
         }
     }
 
@@ -107,6 +108,7 @@ impl Case {
             action: self.shape.clone(),
             cost_critics: 1,
             critic_inputs: 0,
+            auxiliary: 0,
         };
         let minibatch = self.minibatch();
         let heads = Heads::new(&shape, &self.outputs, shape.outputs(), &minibatch);

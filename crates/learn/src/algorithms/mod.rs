@@ -27,7 +27,9 @@ mod trpo;
 mod trpo_lag;
 mod trpo_pid;
 pub mod trust_region;
+mod value_phase;
 
 pub use algorithm::Algorithm;
 pub use make::{make, shaping};
 pub use signal::{Signal, Signals};
+pub use value_phase::value_phase;

@@ -7,6 +7,7 @@ use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{ImageShape, ModelShape};
 use crate::random::{Purpose, Stream};
+use crate::sampling::auxiliary::Auxiliary;
 use crate::sampling::rollout::{Part, Rollout};
 use hasard_engine::simd::Simd;
 
@@ -32,7 +33,10 @@ pub fn learner(config: &TrainConfig) -> (Learner, Rollout) {
     let action = ActionShape { sizes: vec![3, 2], deltas: 1 };
     let cost_critics =
         if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
-    let shape = ModelShape::new(image, action, cost_critics, 0, &config.network).unwrap();
+    let auxiliary = Auxiliary::new(config);
+    let shape = ModelShape::new(image, action, cost_critics, 0, &config.network)
+        .and_then(|shape| shape.with_auxiliary(auxiliary.outputs()))
+        .unwrap();
     let learner = Learner::new(config, &shape, &ComputeDevice::Processor(Simd::PLAIN));
     let mut stream = Stream::new(3, Purpose::Evaluation, 0, 0);
     let mut part = Part { initial_state: shape.zero_state(LANES), ..Part::default() };
@@ -48,5 +52,8 @@ pub fn learner(config: &TrainConfig) -> (Learner, Rollout) {
     let rows = &part.outputs[..STEPS * LANES * shape.outputs()];
     let logs = Policy::new(&shape.action, rows, shape.outputs()).log_probability(&taken).values;
     part.log_probabilities = logs.iter().map(|&log| log as f32).collect();
+    let what = auxiliary.insight();
+    let cells = auxiliary.targets(what, &vec![0; what.bytes()]).count();
+    part.shown = (0..STEPS * LANES * cells).map(|cell| (cell * 5 % 8) as u8).collect();
     (learner, Rollout { parts: vec![part] })
 }

@@ -24,6 +24,14 @@ names! {
         TimeLeft = "time-left",
         /// Each constraint's cost of the episode so far, in units of its budget.
         BudgetSpent = "budget-spent",
+        /// Health points.
+        Health = "health",
+        /// Rounds for the weapon in hand.
+        Ammunition = "ammunition",
+        /// Where the player is between the ends of the map, which way it looks, how fast it goes.
+        Position = "position",
+        /// Of each group of things, how much of the picture it fills, and how near it is.
+        InView = "in-view",
     }
 }
 
@@ -57,6 +65,15 @@ names! {
 /// Samples after which moments have forgotten two thirds of what was before: 400,000 frames.
 fn a_hundred_rollouts() -> f64 {
     100_000.0
+}
+
+/// As in the paper of the value phase.
+fn six() -> usize {
+    6
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 /// How the networks learn.
@@ -146,9 +163,29 @@ pub struct LearningConfig {
     /// counts.
     #[serde(default)]
     pub bootstrap_cost_time_outs: Option<bool>,
-    /// What the critics see and the policy does not; such as `["time-left","budget-spent"]`.
+    /// What the critics see and the policy does not; such as `["time-left","budget-spent"]`. Of
+    /// the player there are `health`, `ammunition` and `position`, and of what is in its picture
+    /// `in-view`.
     #[serde(default)]
     pub critic_inputs: Vec<CriticInput>,
+    /// After every so many rollouts the critics make passes of their own, in which the policy is
+    /// held where it is (Cobbe et al. 2021, arXiv 2009.04416); `null` for none.
+    #[serde(default)]
+    pub value_phase: Option<u64>,
+    /// How many passes these are, over the latest rollout.
+    #[serde(default = "six")]
+    pub value_phase_passes: usize,
+    /// Weight of the policy's divergence from what it was, in these passes.
+    #[serde(default = "one")]
+    pub value_phase_clone: f64,
+    /// Weight of a loss by which what policy and critics are computed from predicts the depth of
+    /// the picture, in eight bands in each cell of a grid of 4 by 8 (Mirowski et al. 2017, arXiv
+    /// 1611.03673); 0 for none. Agents are handed on without what predicts it.
+    #[serde(default)]
+    pub auxiliary_depth: f64,
+    /// The same of which of ten groups of things each cell shows most of.
+    #[serde(default)]
+    pub auxiliary_labels: f64,
     /// The first forward pass over a rollout is not computed but taken from the actors, in
     /// synchronous runs, which is faster. Statistics of pixels then follow one rollout later;
     /// docs/tried/reused_forward_pass.md has what agents learned with it. Where `recurrence` cuts

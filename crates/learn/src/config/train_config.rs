@@ -215,6 +215,8 @@ impl TrainConfig {
             ("the exploration coefficient", learning.exploration_coefficient, 0.0, 1e3),
             ("the seconds between reports", self.reporting.report_seconds, 0.0, f64::MAX),
             ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
+            ("learning.auxiliary_depth", learning.auxiliary_depth, 0.0, 1e3),
+            ("learning.auxiliary_labels", learning.auxiliary_labels, 0.0, 1e3),
             ("network.policy_scale", self.network.policy_scale, 0.0, 10.0),
             ("the share of the budget", self.budget_share, 0.0, 2.0),
             ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
@@ -239,6 +241,14 @@ impl TrainConfig {
                 "separate networks",
                 &"off",
                 &format!("on for {}, whose steps are the policy's alone", self.algorithm),
+            );
+        }
+        let predicts = learning.auxiliary_depth > 0.0 || learning.auxiliary_labels > 0.0;
+        if predicts && self.network.separate {
+            return refuse(
+                "learning.auxiliary_depth or .auxiliary_labels",
+                &"above 0 where policy and critics are networks of their own",
+                "0",
             );
         }
         if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
@@ -323,7 +333,36 @@ impl TrainConfig {
                 "above 0, for what is left of it is measured in its units",
             );
         }
-        self.check_annealing()
+        self.check_annealing()?;
+        self.check_value_phase()
+    }
+
+    /// Refuses a value phase that no run can have.
+    pub(crate) fn check_value_phase(&self) -> Result<(), LearnError> {
+        let refuse = |name: &str, given: f64, allowed: &str| {
+            Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
+        };
+        let learning = &self.learning;
+        let (passes, clone) = (learning.value_phase_passes, learning.value_phase_clone);
+        if learning.value_phase == Some(0) {
+            return refuse("learning.value_phase", 0.0, "a number of rollouts from 1, or null");
+        }
+        if learning.value_phase.is_some() && self.algorithm.separates_networks() {
+            let allowed =
+                "null for algorithms of the second order, whose critics have critic_steps";
+            return refuse(
+                "learning.value_phase",
+                learning.value_phase.unwrap_or(0) as f64,
+                allowed,
+            );
+        }
+        if !(1..=1000).contains(&passes) {
+            return refuse("learning.value_phase_passes", passes as f64, "1 to 1000");
+        }
+        if !(0.0..=1e6).contains(&clone) {
+            return refuse("learning.value_phase_clone", clone, "a number from 0 to 1000000");
+        }
+        Ok(())
     }
 
     /// Refuses what several tasks cannot have.

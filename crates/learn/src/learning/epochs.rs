@@ -12,6 +12,8 @@ pub struct Epochs {
     lanes: usize,
     /// How many.
     pub count: usize,
+    /// Number of the first, by which lanes are dealt.
+    first: u64,
     minibatches: usize,
     target_kl: Option<f64>,
 }
@@ -23,7 +25,19 @@ impl Epochs {
         let learning = &config.learning;
         let (count, minibatches, target_kl) =
             (learning.epochs, learning.minibatches, learning.target_kl);
-        Epochs { seed: config.seed, rollout, lanes, count, minibatches, target_kl }
+        Epochs { seed: config.seed, rollout, lanes, count, first: 0, minibatches, target_kl }
+    }
+
+    /// The passes of the critics' phase after it, dealt otherwise.
+    #[must_use]
+    pub fn of_values(config: &TrainConfig, rollout: u64, lanes: usize) -> Epochs {
+        let own = Epochs::new(config, rollout, lanes);
+        Epochs {
+            count: config.learning.value_phase_passes,
+            target_kl: None,
+            first: config.learning.epochs as u64,
+            ..own
+        }
     }
 
     /// The lanes of each minibatch of an epoch: dealt anew every time, unless one minibatch takes
@@ -32,7 +46,7 @@ impl Epochs {
     pub fn minibatches(&self, epoch: usize) -> Vec<Vec<usize>> {
         let mut lanes: Vec<usize> = (0..self.lanes).collect();
         if self.minibatches > 1 {
-            Stream::new(self.seed, Purpose::Shuffle, self.rollout, epoch as u64)
+            Stream::new(self.seed, Purpose::Shuffle, self.rollout, self.first + epoch as u64)
                 .shuffle(&mut lanes);
         }
         lanes.chunks(self.lanes.div_ceil(self.minibatches)).map(<[usize]>::to_vec).collect()

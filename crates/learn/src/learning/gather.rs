@@ -26,9 +26,12 @@ pub(crate) fn gather<'a>(
     let (width, action) = (shape.outputs(), &shape.action);
     let (mut actions, mut deltas, mut logs, mut policy) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut shown = Vec::new();
     for (step, lane) in rows() {
         let (part, own) = rollout.find(lane);
         let row = step * part.lanes + own;
+        let cells = part.shown.len() / (part.steps * part.lanes);
+        shown.extend_from_slice(&part.shown[row * cells..(row + 1) * cells]);
         let (count, continuous) = (action.sizes.len(), action.deltas);
         actions.extend_from_slice(&part.actions[row * count..(row + 1) * count]);
         deltas.extend_from_slice(&part.deltas[row * continuous..(row + 1) * continuous]);
@@ -61,6 +64,7 @@ pub(crate) fn gather<'a>(
         critics: (0..prepared.advantages.len()).map(critic).collect(),
         mean_costs: mean_costs(rollout, trajectories, config.constraints.len()),
         exploration_coefficient: 0.0,
+        shown,
     }
 }
 

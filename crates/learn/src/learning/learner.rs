@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::learning::gather::{gather, sequences};
+use crate::learning::gather::gather;
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 pub use crate::learning::minibatch::{Critic, Minibatch};
@@ -13,10 +13,11 @@ use crate::learning::optimiser::Adam;
 use crate::learning::policy::Policy;
 use crate::learning::popart::preserve_outputs;
 pub use crate::learning::targets::Prepared;
-use crate::learning::targets::{prepare, prepare_anew};
+use crate::learning::targets::prepare;
 use crate::networks::cpu::vectors::Vectors;
 use crate::networks::device::ComputeDevice;
 use crate::networks::{ModelSequences, ModelShape, Published, Stack};
+use crate::sampling::auxiliary::Auxiliary;
 use crate::sampling::rollout::Rollout;
 use crate::team::Team;
 use hasard_engine::simd::Simd;
@@ -46,6 +47,8 @@ pub struct Learner {
     pub exploration_coefficient: f64,
     /// Settings.
     pub config: TrainConfig,
+    /// What the network predicts beside.
+    auxiliary: Auxiliary,
     /// What computes everything but the networks on a card.
     kernels: Simd,
     gradient: Vec<f32>,
@@ -86,6 +89,7 @@ impl Learner {
             rate: config.learning.rate,
             exploration_coefficient: config.learning.exploration_coefficient,
             config: config.clone(),
+            auxiliary: Auxiliary::new(config),
             kernels: device.kernels(),
             gradient: vec![0.0; parameters.len()],
             parameters,
@@ -156,25 +160,6 @@ impl Learner {
         prepared
     }
 
-    /// The same rollout with the advantages and targets that follow from what the critics say of it
-    /// now.
-    pub fn prepare_anew<'a>(&mut self, prepared: &Prepared<'a>) -> Prepared<'a> {
-        self.refresh();
-        let rollout = prepared.rollout;
-        let (steps, count) = (rollout.trajectory_steps(), rollout.trajectories());
-        let all: Vec<usize> = (0..count).collect();
-        // With a step more than is learned from: the value of what comes after the last.
-        let mut batch = sequences(rollout, &self.shape, &all, steps + 1);
-        let rows = self.networks.forward(0..self.shape.networks.len(), &mut batch);
-        let (width, first) = (self.shape.outputs(), self.shape.value_column());
-        let value = |critic: usize, lane: usize, step: usize| {
-            let cut = (step / steps).min(count / rollout.lanes() - 1);
-            let row = (step - cut * steps) * count + cut * rollout.lanes() + lane;
-            rows[row * width + first + critic]
-        };
-        prepare_anew(prepared, &self.shape, &self.config, &self.returns, value)
-    }
-
     /// Some trajectories.
     #[must_use]
     pub fn minibatch<'a>(&self, prepared: &Prepared<'a>, trajectories: &[usize]) -> Minibatch<'a> {
@@ -212,12 +197,19 @@ impl Learner {
         let outputs = self.networks.forward(networks.clone(), &mut minibatch.batch);
         let heads = Heads::new(&self.shape, &outputs, self.shape.outputs(), minibatch);
         let loss = loss(&heads, minibatch, means);
-        means.add("loss", loss.value);
-        if !loss.value.is_finite() {
-            return Err(diverged("loss", loss.value));
+        // The worlds of an agent's learner show nothing, and its network predicts nothing.
+        let (value, predicted) = if self.shape.auxiliary > 0 && networks.contains(&0) {
+            self.auxiliary.loss(self.networks.predicted(), &minibatch.shown, means)
+        } else {
+            (0.0, Vec::new())
+        };
+        let value = loss.value + value;
+        means.add("loss", value);
+        if !value.is_finite() {
+            return Err(diverged("loss", value));
         }
-        let mut gradient = std::mem::take(&mut self.gradient);
-        self.networks.backward(networks, &mut minibatch.batch, &loss.rows(), &mut gradient);
+        let (rows, mut gradient) = (loss.rows(), std::mem::take(&mut self.gradient));
+        self.networks.backward(networks, &mut minibatch.batch, &rows, &predicted, &mut gradient);
         Ok(gradient)
     }
 
@@ -387,5 +379,6 @@ fn diverged(what: &str, value: f64) -> LearnError {
     ))
 }
 
+mod anew;
 #[cfg(test)]
 mod tests;

@@ -33,6 +33,8 @@ pub struct Minibatch<'a> {
     pub mean_costs: Vec<f64>,
     /// Weight of the exploration loss at present.
     pub exploration_coefficient: f64,
+    /// What the pictures show, for a network that predicts it: as many classes a row.
+    pub shown: Vec<u8>,
 }
 
 impl<'a> Minibatch<'a> {
@@ -67,6 +69,11 @@ impl<'a> Minibatch<'a> {
             critics: self.critics.iter().map(critic).collect(),
             mean_costs: self.mean_costs.clone(),
             exploration_coefficient: self.exploration_coefficient,
+            shown: {
+                let cells = self.shown.len() / self.batch.sequences.rows().max(1);
+                let of = |&row: &usize| &self.shown[row * cells..(row + 1) * cells];
+                rows.iter().flat_map(of).copied().collect()
+            },
         }
     }
 

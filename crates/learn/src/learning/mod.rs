@@ -2,6 +2,7 @@
 //! optimiser, and the learner that algorithms steer.
 
 pub mod advantage;
+mod auxiliary;
 pub mod dual_number;
 pub mod epochs;
 mod gather;

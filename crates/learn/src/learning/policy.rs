@@ -263,6 +263,30 @@ impl Policy {
         )
     }
 
+    /// Divergence of this distribution as seen from an older one, KL(old, this). The slopes are in
+    /// this one's outputs.
+    #[must_use]
+    pub fn divergence_seen_from(&self, old: &Policy) -> Column {
+        let width = self.shape.parameters();
+        self.sum_over_parts(
+            |row, _, logs, first, slopes| {
+                let olds = &old.rows[row * width + first..];
+                for ((slope, log), old) in slopes.iter_mut().zip(logs).zip(olds) {
+                    *slope = libm::exp(*log) - libm::exp(*old);
+                }
+                logs.iter().zip(olds).map(|(log, old)| libm::exp(*old) * (old - log)).sum()
+            },
+            |row, _, normal, first, slopes| {
+                let at = row * width + first;
+                let old = Normal { mean: old.rows[at], log_deviation: old.rows[at + 1] };
+                let distance = normal.mean - old.mean;
+                let scaled = (old.variance() + distance * distance) / normal.variance();
+                slopes.copy_from_slice(&[distance / normal.variance(), 1.0 - scaled]);
+                normal.log_deviation - old.log_deviation + 0.5 * (scaled - 1.0)
+            },
+        )
+    }
+
     /// The Fisher matrix of each row's distribution, in its outputs, times a vector a row.
     #[must_use]
     pub fn fisher_times(&self, vectors: &[f32]) -> Vec<f32> {

@@ -1,4 +1,4 @@
-//! Value heads that see privileged inputs.
+//! Value heads that see privileged inputs, and a head that predicts what the picture shows.
 //!
 //! Such a head has a linear output more for each input x_i, and the value is out_0 + sum(x_i
 //! out_i): linear in the inputs with slopes that the network finds in what it sees, such as a rate
@@ -16,18 +16,33 @@ pub struct CriticHeads {
     pub outputs: usize,
     /// Privileged inputs of a row.
     pub inputs: usize,
+    /// Outputs behind all others, which are predictions and no values.
+    pub auxiliary: usize,
 }
 
 impl CriticHeads {
+    /// Whether the outputs are rows as they are.
+    #[must_use]
+    pub const fn are_plain(self) -> bool {
+        self.inputs == 0 && self.auxiliary == 0
+    }
+
     /// Numbers of a row once each value is one.
     #[must_use]
     pub fn columns(self) -> usize {
-        self.policy + (self.outputs - self.policy) / (1 + self.inputs)
+        self.policy + (self.outputs - self.auxiliary - self.policy) / (1 + self.inputs)
+    }
+
+    /// What the outputs predict, row by row.
+    #[must_use]
+    pub fn predicted(self, outputs: &[f32]) -> Vec<f32> {
+        let rows = outputs.chunks_exact(self.outputs);
+        rows.flat_map(|row| &row[self.outputs - self.auxiliary..]).copied().collect()
     }
 
     /// Outputs of each value.
     fn heads(self) -> impl Iterator<Item = Range<usize>> {
-        (self.policy..self.outputs)
+        (self.policy..self.outputs - self.auxiliary)
             .step_by(1 + self.inputs)
             .map(move |first| first..first + 1 + self.inputs)
     }
@@ -50,9 +65,9 @@ impl CriticHeads {
         }
     }
 
-    /// The gradient of the network's outputs from that of the rows.
+    /// The gradient of the network's outputs from that of the rows, and that of what they predict.
     #[must_use]
-    pub fn spread(self, rows: &[f32], privileged: &[f32]) -> Vec<f32> {
+    pub fn spread(self, rows: &[f32], privileged: &[f32], predicted: &[f32]) -> Vec<f32> {
         let width = self.columns();
         let mut gradient = vec![0.0; rows.len() / width * self.outputs];
         for (index, (out, row)) in
@@ -64,6 +79,10 @@ impl CriticHeads {
                 let (first, slopes) = out[head].split_first_mut().expect("a head has an output");
                 *first = value;
                 slopes.iter_mut().zip(inputs).for_each(|(slope, input)| *slope = value * input);
+            }
+            if !predicted.is_empty() {
+                let own = &predicted[index * self.auxiliary..(index + 1) * self.auxiliary];
+                out[self.outputs - self.auxiliary..].copy_from_slice(own);
             }
         }
         gradient
@@ -78,7 +97,7 @@ mod tests {
     /// central differences.
     #[test]
     fn gradients_of_values_equal_differences_and_the_policy_sees_nothing() {
-        let heads = CriticHeads { policy: 2, outputs: 8, inputs: 2 };
+        let heads = CriticHeads { policy: 2, outputs: 8, inputs: 2, auxiliary: 0 };
         assert_eq!(heads.columns(), 4);
         let outputs: Vec<f32> = (0..16).map(|index| (index as f32 * 0.7).sin()).collect();
         let privileged = [0.5, -1.0, -0.25, 2.0];
@@ -97,7 +116,7 @@ mod tests {
             "the policy's outputs of the second row"
         );
         let weights: Vec<f32> = (0..8).map(|index| (index as f32).cos()).collect();
-        let gradient = heads.spread(&weights, &privileged);
+        let gradient = heads.spread(&weights, &privileged, &[]);
         for index in 0..16 {
             let moved = |by: f32| {
                 let mut outputs = outputs.clone();
@@ -115,5 +134,21 @@ mod tests {
                 gradient[index]
             );
         }
+    }
+
+    /// What is predicted stands behind all else, is in no row, and has its own gradient.
+    #[test]
+    fn predictions_stand_apart() {
+        let plain = CriticHeads { policy: 2, outputs: 4, inputs: 0, auxiliary: 0 };
+        let heads = CriticHeads { outputs: 7, auxiliary: 3, ..plain };
+        assert!(plain.are_plain() && !heads.are_plain() && heads.columns() == 4);
+        let outputs: Vec<f32> = (0..14u8).map(f32::from).collect();
+        let mut rows = vec![0.0; 8];
+        heads.combine(&outputs, &[], &mut rows);
+        assert_eq!(rows, [0.0, 1.0, 2.0, 3.0, 7.0, 8.0, 9.0, 10.0]);
+        assert_eq!(heads.predicted(&outputs), [4.0, 5.0, 6.0, 11.0, 12.0, 13.0]);
+        let spread = heads.spread(&rows, &[], &heads.predicted(&outputs));
+        assert_eq!(spread, outputs);
+        assert_eq!(heads.spread(&rows, &[], &[])[4..7], [0.0; 3]);
     }
 }

@@ -34,6 +34,9 @@ pub struct ModelShape {
     pub cost_critics: usize,
     /// Privileged inputs of the critics.
     pub critic_inputs: usize,
+    /// Outputs of a last head of the first network that predicts what the picture shows; in no
+    /// output row.
+    pub auxiliary: usize,
 }
 
 impl ModelShape {
@@ -66,7 +69,7 @@ impl ModelShape {
         } else {
             vec![network(heads.collect())]
         };
-        let shape = ModelShape { networks, action, cost_critics, critic_inputs: 0 };
+        let shape = ModelShape { networks, action, cost_critics, critic_inputs: 0, auxiliary: 0 };
         shape.networks.iter().try_for_each(NetworkShape::check)?;
         Ok(shape)
     }
@@ -85,6 +88,16 @@ impl ModelShape {
         Ok(self)
     }
 
+    /// The same with a head of so many outputs that predicts what the picture shows.
+    pub fn with_auxiliary(mut self, outputs: usize) -> Result<ModelShape, LearnError> {
+        if outputs > 0 {
+            self.auxiliary = outputs;
+            self.networks[0].heads.push(outputs);
+            self.networks[0].check()?;
+        }
+        Ok(self)
+    }
+
     /// What becomes of a network's outputs.
     fn critic_heads(&self, network: usize) -> CriticHeads {
         let policy = if network == 0 { self.action.parameters() } else { 0 };
@@ -92,6 +105,7 @@ impl ModelShape {
             policy,
             outputs: self.networks[network].outputs(),
             inputs: self.critic_inputs,
+            auxiliary: if network == 0 { self.auxiliary } else { 0 },
         }
     }
 
@@ -229,13 +243,13 @@ impl Actor {
             let units = shape.state_size();
             let state = &mut state[lanes.start * units..lanes.end * units];
             let heads = self.shape.critic_heads(index);
-            if self.shape.networks.len() == 1 && heads.inputs == 0 {
+            if self.shape.networks.len() == 1 && heads.are_plain() {
                 return network.act(observations, extra, state, rows, place);
             }
             self.outputs.resize(lanes.len() * shape.outputs(), 0.0);
             network.act(observations, extra, state, &mut self.outputs, place);
             let count = heads.columns();
-            if heads.inputs == 0 {
+            if heads.are_plain() {
                 place_columns(rows, self.shape.outputs(), first, &self.outputs, count);
             } else {
                 let mut own = vec![0.0; lanes.len() * count];
@@ -298,6 +312,8 @@ impl<'a> ModelSequences<'a> {
 pub struct Stack {
     shape: ModelShape,
     networks: Vec<Box<dyn LearningNetwork>>,
+    /// What the last forward pass of the first network predicted, row by row.
+    predicted: Vec<f32>,
 }
 
 impl Stack {
@@ -313,7 +329,11 @@ impl Stack {
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
         };
-        Stack { networks: shape.networks.iter().map(network).collect(), shape: shape.clone() }
+        Stack {
+            networks: shape.networks.iter().map(network).collect(),
+            shape: shape.clone(),
+            predicted: Vec::new(),
+        }
     }
 
     /// From now on at most so many rows are computed at once.
@@ -360,7 +380,10 @@ impl Stack {
             let count = heads.columns();
             if networks.contains(&index) {
                 let mut outputs = self.forward_network(index, batch);
-                if heads.inputs > 0 {
+                if heads.auxiliary > 0 {
+                    self.predicted = heads.predicted(&outputs);
+                }
+                if !heads.are_plain() {
                     let mut own = vec![0.0; batch.sequences.rows() * count];
                     heads.combine(&outputs, &batch.privileged, &mut own);
                     outputs = own;
@@ -375,18 +398,26 @@ impl Stack {
         rows
     }
 
+    /// What the last forward pass predicted of what pictures show, row by row.
+    #[must_use]
+    pub fn predicted(&self) -> &[f32] {
+        &self.predicted
+    }
+
     /// Output rows of one network alone.
     pub fn forward_network(&mut self, network: usize, batch: &mut ModelSequences<'_>) -> Vec<f32> {
         self.networks[network].forward(batch.of(network))
     }
 
     /// The gradient of the parameters of some networks from that of the output rows of the last
-    /// forward pass; what `gradient` holds of the others is left as it is.
+    /// forward pass, and of what it predicted (nothing stands for zeros); what `gradient` holds of
+    /// the others is left as it is.
     pub fn backward(
         &mut self,
         networks: Range<usize>,
         batch: &mut ModelSequences<'_>,
         rows: &[f32],
+        predicted: &[f32],
         gradient: &mut [f32],
     ) {
         let width = self.shape.outputs();
@@ -400,8 +431,8 @@ impl Stack {
                     .flat_map(|row| &row[first..first + count])
                     .copied()
                     .collect();
-                if heads.inputs > 0 {
-                    own = heads.spread(&own, &batch.privileged);
+                if !heads.are_plain() {
+                    own = heads.spread(&own, &batch.privileged, predicted);
                 }
                 self.backward_network(
                     index,

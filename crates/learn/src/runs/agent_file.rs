@@ -22,6 +22,7 @@ use crate::runs::checkpoint::{Loaded, Store, parameter_names};
 use crate::runs::run_directory::{go_on, read_config, read_selection};
 use crate::runs::selection::Candidate;
 use crate::runs::zoo;
+use crate::sampling::auxiliary::Auxiliary;
 
 /// Weights that share a scale.
 const BLOCK: usize = 64;
@@ -155,7 +156,7 @@ fn pack(
     let mut file = Vec::new();
     for bits in [8, 4] {
         let mut blocks: BTreeMap<String, (Dtype, Vec<u8>)> = BTreeMap::new();
-        for (name, view) in tensors.iter() {
+        for (name, view) in tensors.iter().filter(|(name, _)| !predicts(config, name)) {
             if name.starts_with("pixels.") {
                 blocks.insert(
                     name.into(),
@@ -189,6 +190,14 @@ fn pack(
         }
     }
     Ok(file)
+}
+
+/// Whether a tensor is of the head that predicts what pictures show, which nothing acts by: the one
+/// behind those of the policy and of all critics.
+fn predicts(config: &TrainConfig, tensor: &str) -> bool {
+    let costs = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
+    let head = format!("network0.head{}.", 2 + costs);
+    Auxiliary::new(config).outputs() > 0 && tensor.starts_with(&head)
 }
 
 /// Means, which lie between 0 and 1, and deviations, which lie between 0 and a half, in steps of

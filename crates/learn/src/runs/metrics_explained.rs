@@ -202,6 +202,18 @@ pub const METRICS: &[Metric] = &[
         "",
         "Share of samples whose ratio is beyond the clip, 0 to 1.",
     ),
+    metric(
+        "auxiliary_depth_loss",
+        "nats",
+        "learning.auxiliary_depth",
+        "Cross entropy of the predicted depth, mean over cells, without its weight. 2.08 is a guess.",
+    ),
+    metric(
+        "auxiliary_labels_loss",
+        "nats",
+        "learning.auxiliary_labels",
+        "The same of the predicted groups of things. 2.40 is a guess.",
+    ),
     metric("loss", "", "all but TRPO, TRPOLag, TRPOPID and CPO", "The whole loss."),
     metric(
         "gradient_norm",
@@ -215,6 +227,19 @@ pub const METRICS: &[Metric] = &[
         "",
         "Passes made over a rollout. Fewer than asked for where target_kl ended them.",
     ),
+    metric(
+        "value_phase_loss",
+        "",
+        "learning.value_phase",
+        "Half the squared error of all critics in their own passes, in units of normalised returns.",
+    ),
+    metric(
+        "value_phase_divergence",
+        "nats",
+        "learning.value_phase",
+        "Mean divergence of the policy in these passes from what it was before them.",
+    ),
+    metric("value_phase_epochs", "", "learning.value_phase", "Passes of the critics alone."),
     metric("policy_cost_loss", "", "P3O", "The penalty in the loss."),
     metric("projection_loss", "", "CUP", "Loss of the second step."),
     metric("projection_epochs", "", "CUP", "Passes of the second step."),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use hasard_envs::{CostTerm, EnvError, FinalObservations, VecEnv, VecOptions};
+use hasard_envs::{CostTerm, EnvError, FinalObservations, Insight, VecEnv, VecOptions};
 
 use crate::algorithms::{self, Algorithm};
 use crate::config::{EnvConfig, TrainConfig};
@@ -17,6 +17,7 @@ use crate::networks::{Actor, ImageShape, ModelShape};
 use crate::random::{Purpose, Stream};
 use crate::runs::checkpoint::{Loaded, Progress};
 use crate::runs::watch::Watch;
+use crate::sampling::auxiliary::Auxiliary;
 use crate::sampling::gather::Gatherer;
 use crate::sampling::privileged::Privileged;
 use crate::sampling::rollout::Rollout;
@@ -94,7 +95,9 @@ pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, 
         extra,
         &config.network,
     )?;
-    shape.with_critic_inputs(Privileged::new(config).count())
+    shape
+        .with_critic_inputs(Privileged::new(config).count())?
+        .with_auxiliary(Auxiliary::new(config).outputs())
 }
 
 impl Session {
@@ -143,6 +146,11 @@ impl Session {
             )));
         }
         let (shares, own_parts) = team.shares(sampling.lanes, sampling.samplers);
+        let privileged = Privileged::new(&config);
+        let auxiliary = Auxiliary::new(&config);
+        let predicted = auxiliary.insight();
+        let insight =
+            Insight { depth: predicted.depth, labels: predicted.labels, ..privileged.insight() };
         let mut worlds = Vec::new();
         for share in &shares[own_parts.clone()] {
             let options = VecOptions {
@@ -152,6 +160,7 @@ impl Session {
                 seed: Stream::new(config.seed, Purpose::Worlds, 0, 0).bits(),
                 first_lane: share.start as u64,
                 final_observations: FinalObservations::Truncated,
+                insight,
                 ..VecOptions::default()
             };
             worlds.push(
@@ -215,7 +224,8 @@ impl Session {
                 config.seed,
             )?;
             sampler.cut(config.trajectory_steps());
-            sampler.show_critics(Privileged::new(&config));
+            sampler.show_critics(privileged.clone(), insight);
+            sampler.predict(auxiliary);
             // Of rollouts that are cut, what the networks computed would fill the memory.
             let whole = config.trajectory_steps() == sampling.rollout;
             if sampling.synchronous && config.learning.reuse_forward && whole {
@@ -328,6 +338,13 @@ impl Session {
         let epochs = Epochs::new(&self.config, self.rollouts, rollout.trajectories());
         let signals = |costs: &[f64]| self.watch.signals(&self.config, done, costs);
         self.algorithm.learn(&mut self.learner, &prepared, &epochs, &signals, &mut self.means)?;
+        algorithms::value_phase(
+            &self.config,
+            &mut self.learner,
+            &prepared,
+            self.rollouts,
+            &mut self.means,
+        )?;
         self.watch.learned();
         if learning.reuse_forward {
             self.learner.absorb(rollout)?;

@@ -24,6 +24,8 @@ pub struct Part {
     pub extra: Vec<f32>,
     /// Privileged inputs of each row, and after the last step.
     pub privileged: Vec<f32>,
+    /// What each row's picture shows, for a network that predicts it: classes of its cells.
+    pub shown: Vec<u8>,
     /// State of each network before the first step of each trajectory, all lanes' first
     /// trajectories first.
     #[serde(skip)]

@@ -9,13 +9,14 @@
 use std::ops::Range;
 use std::sync::{Arc, RwLock};
 
-use hasard_envs::{Batch, LaneState, VecEnv};
+use hasard_envs::{Batch, Insight, LaneState, VecEnv};
 
 use crate::config::Constraint;
 use crate::config::constraint::find_terms;
 use crate::error::LearnError;
 use crate::networks::{Actor, ModelShape, Notes, Published};
 use crate::random::{Purpose, Stream};
+use crate::sampling::auxiliary::Auxiliary;
 use crate::sampling::privileged::Privileged;
 use crate::sampling::rollout::Part;
 use crate::sampling::shaping::{Shaping, seen};
@@ -97,6 +98,10 @@ pub struct Sampler {
     /// What the critics see and the policy does not, of each lane's steps and costs in its episode
     /// so far.
     privileged: Privileged,
+    /// What the worlds show beside observations.
+    insight: Insight,
+    /// What the network predicts of them.
+    auxiliary: Auxiliary,
     ages: Vec<u32>,
     spent: Vec<f64>,
 }
@@ -138,6 +143,8 @@ impl Sampler {
             recording: false,
             trajectory_steps: usize::MAX,
             privileged: Privileged::default(),
+            insight: Insight::default(),
+            auxiliary: Auxiliary::default(),
             ages: vec![0; lanes],
             spent: vec![0.0; lanes * constraints.len()],
         })
@@ -154,9 +161,15 @@ impl Sampler {
         self.recording = true;
     }
 
-    /// Shows the critics what the policy does not see.
-    pub fn show_critics(&mut self, privileged: Privileged) {
-        self.privileged = privileged;
+    /// Shows the critics what the policy does not see, in worlds that show so much beside
+    /// observations.
+    pub fn show_critics(&mut self, privileged: Privileged, insight: Insight) {
+        (self.privileged, self.insight) = (privileged, insight);
+    }
+
+    /// Keeps what the pictures show, for a network that predicts it.
+    pub fn predict(&mut self, auxiliary: Auxiliary) {
+        self.auxiliary = auxiliary;
     }
 
     /// Keeps the states at the beginning of every trajectory of so many steps.
@@ -227,6 +240,8 @@ impl Sampler {
             batch
                 .observations
                 .copy_from_slice(&whole.observations[lanes.start * pixels..lanes.end * pixels]);
+            let shown = batch.insight.len() / lanes.len();
+            batch.insight.copy_from_slice(&whole.insight[lanes.start * shown..lanes.end * shown]);
         }
         (self.state, self.safety, self.steps) = (saved.state, saved.safety, saved.steps);
         Ok(())
@@ -247,6 +262,8 @@ impl Sampler {
         let groups = self.worlds.groups();
         part.prepare(&self.shape, steps, self.lanes(), groups, self.constraints.len());
         part.trajectory_steps = self.trajectory_steps.min(steps);
+        let shown = self.auxiliary.targets(self.insight, &vec![0; self.insight.bytes()]).count();
+        part.shown.resize(steps * self.lanes() * shown, 0);
         part.initial_state.resize_with(self.state.len(), Vec::new);
         let trajectories = part.trajectories();
         for (initial, state) in part.initial_state.iter_mut().zip(&self.state) {
@@ -283,7 +300,7 @@ impl Sampler {
                 copy.copy_from_slice(state);
             }
             self.write_extra(part, steps, lanes.clone());
-            self.write_privileged(part, steps, lanes.clone());
+            self.write_privileged(part, steps, lanes.clone(), &batch.insight);
             let (seen, extra, outputs) =
                 (self.shape.critic_inputs, self.shape.extra_inputs(), self.shape.outputs());
             let rows = steps * self.lanes() + lanes.start..steps * self.lanes() + lanes.end;
@@ -319,18 +336,35 @@ impl Sampler {
         }
     }
 
-    /// Writes what the critics see of some lanes at a step.
-    fn write_privileged(&self, part: &mut Part, step: usize, lanes: Range<usize>) {
+    /// Writes what the critics see of some lanes at a step, when their worlds show so much.
+    fn write_privileged(&self, part: &mut Part, step: usize, lanes: Range<usize>, shown: &[u8]) {
         let (count, constraints) = (self.shape.critic_inputs, self.constraints.len());
         if count > 0 {
-            for lane in lanes {
+            let bytes = self.insight.bytes();
+            for (index, lane) in lanes.enumerate() {
                 let row = (step * self.ages.len() + lane) * count;
                 let spent = &self.spent[lane * constraints..(lane + 1) * constraints];
                 self.privileged.write(
                     self.ages[lane],
                     spent,
+                    self.insight,
+                    &shown[index * bytes..(index + 1) * bytes],
                     &mut part.privileged[row..row + count],
                 );
+            }
+        }
+    }
+
+    /// Writes what the pictures of some lanes show at a step.
+    fn write_shown(&self, part: &mut Part, step: usize, lanes: Range<usize>, shown: &[u8]) {
+        let rows = part.steps * part.lanes;
+        let cells = part.shown.len() / rows.max(1);
+        if cells > 0 {
+            let first = (step * part.lanes + lanes.start) * cells;
+            let to = part.shown[first..].chunks_exact_mut(cells);
+            for (to, row) in to.zip(shown.chunks_exact(self.insight.bytes())) {
+                let targets = self.auxiliary.targets(self.insight, row);
+                to.iter_mut().zip(targets).for_each(|(to, class)| *to = class);
             }
         }
     }
@@ -344,7 +378,8 @@ impl Sampler {
         let (seen, extra, outputs) =
             (self.shape.critic_inputs, self.shape.extra_inputs(), self.shape.outputs());
         self.write_extra(part, step, lanes.clone());
-        self.write_privileged(part, step, lanes.clone());
+        self.write_privileged(part, step, lanes.clone(), &batch.insight);
+        self.write_shown(part, step, lanes.clone(), &batch.insight);
         let out = &mut part.outputs[rows.start * outputs..rows.end * outputs];
         let extra = &part.extra[rows.start * extra..rows.end * extra];
         let notes = Notes {
@@ -413,7 +448,7 @@ impl Sampler {
             part.positions[row] = batch.positions[index];
             part.done[row] = batch.terminated[index] || batch.truncated[index];
         }
-        for (index, observation) in batch.finals() {
+        for (place, (index, observation)) in batch.finals().enumerate() {
             let lane = lanes.start + index;
             let mut row = vec![0.0; self.shape.outputs()];
             for ((copy, state), network) in
@@ -429,6 +464,8 @@ impl Sampler {
             self.privileged.write(
                 self.ages[lane],
                 &self.spent[lane * constraints..(lane + 1) * constraints],
+                self.insight,
+                batch.final_insight(place),
                 &mut shown,
             );
             self.actor.act(observation, extra, &shown, &mut self.after_state, 0..1, &mut row, None);

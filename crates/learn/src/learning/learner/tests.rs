@@ -48,3 +48,49 @@ fn costs_may_use_the_rewards_normaliser() {
         );
     }
 }
+
+/// What is predicted of pictures moves the parameters beside everything else: the gradient of the
+/// whole loss, along directions through all of them, is that of central differences.
+#[test]
+fn predictions_have_their_part_in_the_gradient() {
+    let mut config = small::config(AlgorithmKind::PpoLag);
+    (config.learning.auxiliary_depth, config.learning.auxiliary_labels) = (0.7, 0.4);
+    let (mut learner, rollout) = small::learner(&config);
+    let prepared = learner.prepare(&rollout);
+    let mut minibatch = learner.minibatch(&prepared, &[2, 0, 3]);
+    let mut at = |parameters: &[f32]| {
+        learner.parameters.copy_from_slice(parameters);
+        learner.replaced();
+        let mut means = Means::default();
+        let loss = |heads: &Heads, _: &Minibatch<'_>, _: &mut Means| {
+            heads.mean_of(&heads.values[1]) + heads.mean_of(&heads.log_probability)
+        };
+        let gradient = learner.gradient(0..1, &mut minibatch, loss, &mut means).unwrap();
+        learner.gradient = gradient.clone();
+        let parts = ["auxiliary_depth_loss", "auxiliary_labels_loss", "loss"];
+        (parts.map(|name| means.get(name).unwrap()), gradient)
+    };
+    let before = learner_parameters(&config);
+    let ([depth, labels, _], gradient) = at(&before);
+    // About those of guesses: logarithms of 8 and 11.
+    assert!((depth - 2.08).abs() < 0.5 && (labels - 2.40).abs() < 0.6, "{depth} {labels}");
+    for turn in 1..5u8 {
+        let direction: Vec<f32> =
+            (0..before.len()).map(|index| (index as f32 * f32::from(turn)).sin()).collect();
+        let moved = |by: f32| -> Vec<f32> {
+            before.iter().zip(&direction).map(|(value, step)| value + by * step).collect()
+        };
+        let (ahead, behind) = (at(&moved(1e-3)).0[2], at(&moved(-1e-3)).0[2]);
+        let expected = (ahead - behind) / 2e-3;
+        let found: f64 =
+            gradient.iter().zip(&direction).map(|(&a, &b)| f64::from(a) * f64::from(b)).sum();
+        assert!(
+            (found - expected).abs() < 0.02 * expected.abs().max(0.3),
+            "direction {turn}: {found} against {expected}"
+        );
+    }
+}
+
+fn learner_parameters(config: &TrainConfig) -> Vec<f32> {
+    small::learner(config).0.parameters
+}

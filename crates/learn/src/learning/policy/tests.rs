@@ -39,7 +39,8 @@ fn slopes_equal_differences() {
         deltas: (0..count * 2).map(|_| stream.normal() as f32).collect(),
     };
     type Number<'a> = &'a dyn Fn(&Policy) -> Column;
-    let numbers: [(&str, Number); 6] = [
+    let numbers: [(&str, Number); 7] = [
+        ("divergence seen from another", &|policy| policy.divergence_seen_from(&old)),
         ("log-probability", &|policy| policy.log_probability(&taken)),
         ("entropy", &Policy::entropy),
         ("divergence from uniform", &Policy::symmetric_divergence_from_uniform),
@@ -122,4 +123,5 @@ fn divergences_follow_their_definition() {
     }
     assert!((p.divergence(&q).mean() - expected).abs() < 1e-8);
     assert!(p.divergence(&p).mean().abs() < 1e-12);
+    assert!((q.divergence_seen_from(&p).mean() - expected).abs() < 1e-8);
 }

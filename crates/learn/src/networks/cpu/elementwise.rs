@@ -9,7 +9,7 @@ use crate::networks::cpu::vectorised::vectorised;
 
 /// e^x for x in about -87..88, clamped outside.
 #[inline(always)]
-fn exponential(x: f32) -> f32 {
+pub fn exponential(x: f32) -> f32 {
     // 1.5 * 2^23: adding it rounds to the nearest whole number, which then stands in the low bits.
     const ROUND: f32 = 12_582_912.0;
     let x = x.clamp(-87.0, 88.0);
