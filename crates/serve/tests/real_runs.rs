@@ -260,6 +260,12 @@ fn experiments_are_folded_and_compared_by_environment() {
     browser.wait(&format!(
         "document.querySelector('.legend [aria-pressed=false]') && {curves} < {before}"
     ));
+    // Names of points that lie together do not cover each other.
+    browser.script("window.placed = null; import('/scatter.js').then((all) => { window.placed = all.places([[200, 100, 'CPO · quick'], [196, 103, 'TRPOPID · quick'], [190, 104, 'TRPOLag · quick'], [193, 101, 'PPO · quick']], 400); })");
+    browser.wait("window.placed?.length == 4");
+    let apart = browser
+        .script("return window.placed.every((one, k) => window.placed.every((other, n) => n <= k || Math.abs(one.y - other.y) >= 12 || one.anchor != other.anchor))");
+    assert_eq!(apart, json!(true));
     browser.photograph("serve_compare");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -110,6 +110,7 @@ fn the_strip_of_episodes_shows_one_and_two_agents_stand_side_by_side() {
     browser.script("const slide = document.querySelector('.stage input[type=range]'); slide.value = 40; slide.dispatchEvent(new Event('input'))");
     browser.wait(&format!("{step} == 40 && {second} == 40"));
     browser.wait("location.hash.includes('second=noop')");
+    browser.wait("document.getElementById('first-words').innerText.includes('step 40')");
     let lacking = browser.script(include_str!("common/accessible.js"));
     assert_eq!(lacking, json!([]));
     browser.photograph("serve_watch_beside");

@@ -2,7 +2,7 @@
 
 use super::columns::Columns;
 use super::evaluated::{self, Stamped};
-use super::files::Stamp;
+use super::files::{Stamp, at_once};
 use super::notes::{self, Notes};
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
@@ -61,6 +61,20 @@ struct Run {
     change: u64,
 }
 
+/// The settings of a run that a search came upon, as they are now.
+struct Found {
+    config: PathBuf,
+    settings: Stamp,
+    /// The folder of those that are served in which it lies.
+    top: PathBuf,
+}
+
+impl Found {
+    fn folder(&self) -> &Path {
+        self.config.parent().unwrap_or(&self.config)
+    }
+}
+
 /// All runs below some folders.
 pub(crate) struct Catalogue {
     folders: Vec<PathBuf>,
@@ -100,10 +114,7 @@ impl Catalogue {
     pub fn refresh(&mut self) {
         let due = |last: Option<Instant>, every| last.is_none_or(|last| last.elapsed() >= every);
         if due(self.searched, SEARCH_EVERY) {
-            let mut there = BTreeSet::new();
-            for folder in self.folders.clone() {
-                self.search(&folder, &folder, 0, &mut there);
-            }
+            let there = self.search();
             let known = self.runs.len();
             self.runs.retain(|id, _| there.contains(id));
             self.kept.retain(|id, _| there.contains(id));
@@ -115,61 +126,60 @@ impl Catalogue {
         }
         if due(self.looked, LOOK_EVERY) {
             let now = SystemTime::now();
-            for run in self.runs.values_mut() {
-                if run.look(now) {
-                    self.changes += 1;
-                    run.change = self.changes;
-                }
+            let changed = at_once(self.runs.values_mut().collect(), |run| run.look(now));
+            for (run, _) in self.runs.values_mut().zip(changed).filter(|(_, changed)| *changed) {
+                self.changes += 1;
+                run.change = self.changes;
             }
             self.looked = Some(Instant::now());
         }
     }
 
-    fn search(&mut self, top: &Path, folder: &Path, depth: usize, there: &mut BTreeSet<String>) {
-        let config = folder.join("config.json");
-        if let Some(settings) = Stamp::of(&config) {
+    /// Takes up runs that are new or have other settings; gives the ids of all that are there.
+    fn search(&mut self) -> BTreeSet<String> {
+        let mut found = Vec::new();
+        self.folders.iter().for_each(|top| folders_of_runs(top, top, 0, &mut found));
+        let same = |one: &Found| {
+            self.runs.get(&id_of(one.folder())).is_some_and(|run| run.settings == one.settings)
+        };
+        let (same, fresh): (Vec<Found>, Vec<Found>) = found.into_iter().partition(same);
+        let mut there: BTreeSet<String> = same.iter().map(|one| id_of(one.folder())).collect();
+        let fresh = fresh.into_iter().take(MAX_RUNS).collect();
+        let read =
+            at_once(fresh, |one: Found| Config::read(&one.config).map(|config| (one, config)));
+        for (one, config) in read.into_iter().flatten() {
+            let (folder, top) = (one.folder(), &one.top);
             let id = id_of(folder);
-            if self.runs.get(&id).is_some_and(|run| run.settings == settings) {
-                there.insert(id);
-            } else if (self.runs.contains_key(&id) || self.runs.len() < MAX_RUNS)
-                && let Ok(config) = Config::read(&config)
-            {
-                let name =
-                    folder.strip_prefix(top).ok().filter(|name| !name.as_os_str().is_empty());
-                let name = name
-                    .or_else(|| folder.file_name().map(Path::new))
-                    .unwrap_or(folder)
-                    .display()
-                    .to_string();
-                self.changes += 1;
-                let run = Run {
-                    path: folder.to_owned(),
-                    name,
-                    config,
-                    settings,
-                    settled: self.changes,
-                    // Of no file: the next look finds out how far it is.
-                    metrics: Stamp { bytes: u64::MAX, ..Stamp::NONE },
-                    last: Map::new(),
-                    evaluation: Stamped::default(),
-                    notes: Notes::default(),
-                    top: top.to_owned(),
-                    alive: false,
-                    change: self.changes,
-                };
-                self.runs.insert(id.clone(), run);
-                there.insert(id);
-                self.looked = None;
+            if !self.runs.contains_key(&id) && self.runs.len() >= MAX_RUNS {
+                continue;
             }
-            return;
+            let name = folder.strip_prefix(top).ok().filter(|name| !name.as_os_str().is_empty());
+            let name = name
+                .or_else(|| folder.file_name().map(Path::new))
+                .unwrap_or(folder)
+                .display()
+                .to_string();
+            self.changes += 1;
+            let run = Run {
+                path: folder.to_owned(),
+                name,
+                config,
+                settings: one.settings,
+                settled: self.changes,
+                // Of no file: the next look finds out how far it is.
+                metrics: Stamp { bytes: u64::MAX, ..Stamp::NONE },
+                last: Map::new(),
+                evaluation: Stamped::default(),
+                notes: Notes::default(),
+                top: top.clone(),
+                alive: false,
+                change: self.changes,
+            };
+            self.runs.insert(id.clone(), run);
+            there.insert(id);
+            self.looked = None;
         }
-        let Ok(entries) = std::fs::read_dir(folder) else { return };
-        for entry in entries.flatten() {
-            let trash = depth == 0 && entry.file_name() == notes::TRASH;
-            if !trash && depth < MAX_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-                self.search(top, &entry.path(), depth + 1, there);
-            }
-        }
+        there
     }
 
     /// The directory of a run.
@@ -304,6 +314,22 @@ impl Run {
         )
         .hash(&mut hasher);
         format!("{:016x}", hasher.finish())
+    }
+}
+
+/// Runs in a folder and below it, but those in the trash.
+fn folders_of_runs(top: &Path, folder: &Path, depth: usize, found: &mut Vec<Found>) {
+    let config = folder.join("config.json");
+    if let Some(settings) = Stamp::of(&config) {
+        found.push(Found { config, settings, top: top.to_owned() });
+        return;
+    }
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let trash = depth == 0 && entry.file_name() == notes::TRASH;
+        if !trash && depth < MAX_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            folders_of_runs(top, &entry.path(), depth + 1, found);
+        }
     }
 }
 

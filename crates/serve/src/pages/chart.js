@@ -19,7 +19,7 @@ export class Shared {
 // A series: { name, colour, dash, x, y, half, kind: 'line', 'points' or 'thin' }. Thin lines are neither smoothed nor read out.
 export class Chart {
   constructor(shared, { title, unit = '', what = title, note = '', file, onmoment }) {
-    Object.assign(this, { shared, title, unit: unit ? `${what} (${unit})` : what, file, onmoment, series: [], budgets: [], places: null });
+    Object.assign(this, { shared, title, unit: unit && unit !== what.toLowerCase() ? `${what} (${unit})` : what, file, onmoment, series: [], budgets: [], places: null });
     this.svg = shape('svg', { class: 'chart', role: 'img', tabindex: 0, height: 260, 'aria-label': title });
     this.told = make('div', { class: 'told' });
     const saves = downloads(title, file, () => standalone(this.svg, title, this.legend()), () => this.rows());

@@ -29,7 +29,9 @@ export function choose(options, value, onchange) {
 }
 
 export function number(value, digits = 2) {
-  return value == null || Number.isNaN(value) ? '–' : Number(value).toLocaleString('en', { maximumFractionDigits: digits });
+  if (value == null || Number.isNaN(value)) return '–';
+  const text = Number(value).toLocaleString('en', { maximumFractionDigits: digits });
+  return text === '-0' ? '0' : text;
 }
 
 // Asks the server; when it is away, says so and tries again until it is back.

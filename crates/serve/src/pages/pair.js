@@ -7,13 +7,15 @@ export class Pair {
     this.canvas = make('canvas', { class: 'view', role: 'img', 'aria-label': 'The second agent', width: 320, height: 240, id: 'second' });
     this.words = make('figcaption', { id: 'second-words' });
     this.element = make('figure', { hidden: true }, this.canvas, this.words);
+    // Who the first one is: said only where there are two.
+    this.first = make('figcaption', { id: 'first-words', hidden: true });
     this.screen = null;
   }
 
   // Begins with the same episode at the same step; `name` is who it is.
   begin(name, query) {
     this.end();
-    this.element.hidden = false;
+    this.show(true);
     let budget = 0;
     const say = (text) => { this.words.textContent = `${name}${text}`; };
     say('');
@@ -27,6 +29,12 @@ export class Pair {
   end() {
     this.screen?.end();
     this.screen = null;
-    this.element.hidden = true;
+    this.show(false);
+  }
+
+  // Two pictures have more room than one.
+  show(on) {
+    this.element.hidden = this.first.hidden = !on;
+    this.element.closest('.stage')?.classList.toggle('two', on);
   }
 }

@@ -28,7 +28,7 @@ export function play(main, query) {
     make('section', { class: 'stage' },
       make('div', { class: 'card' }, task, stage, numbers, meter, words, touch,
         make('div', { class: 'row' }, start, make('button', { onclick: () => { screen?.ask({ do: 'next' }); begin(); canvas.focus(); } }, 'Next seed'), make('button', { id: 'keys', onclick: () => help(card.dataset.what !== 'keys') }, 'Keys (H)'))),
-      make('div', { class: 'card side' }, make('h2', {}, 'Best within the budget'), make('p', { class: 'pale' }, 'People and agents in this environment whose cost is within the budget, by return. Agents by their closing evaluation.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Best within the budget' }, make('table', { id: 'best' }, make('thead', {}, make('tr', {}, ...['who', 'return', 'cost', 'replay', 'download'].map((head) => make('th', { scope: 'col' }, head)))), table)))));
+      make('div', { class: 'card side' }, make('h2', {}, 'Best within the budget'), make('p', { class: 'pale' }, 'People and agents in this environment whose cost is within the budget, by return. Agents by their closing evaluation.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Best within the budget' }, make('table', { id: 'best' }, make('thead', {}, make('tr', {}, ...[['who'], ['return', 'number'], ['cost', 'number'], ['watch']].map(([head, kind = '']) => make('th', { scope: 'col', class: kind }, head)))), table)))));
 
   const press = (key, down) => screen?.ask({ do: down ? 'press' : 'release', key });
   function begin() {
@@ -109,9 +109,9 @@ export function play(main, query) {
     rows = all.filter((row) => row.env === now.env && row.within);
     const here = rows.slice(0, 50);
     table.replaceChildren(...here.map((row) => make('tr', {}, make('td', {}, row.who), make('td', { class: 'number' }, number(row.return)), make('td', { class: `number ${row.within ? 'good' : 'bad'}` }, `${number(row.cost)} of ${number(row.budget)}`),
-      make('td', {}, make('a', { href: `#watch?agent=${encodeURIComponent(row.agent)}`, 'aria-label': `Watch ${row.who}, return ${number(row.return)}` }, 'watch')),
-      make('td', {}, ...(row.episode ? ['episode', 'mp4', 'gif'].flatMap((kind) => [make('a', { href: `/api/episode?name=${encodeURIComponent(row.episode)}&kind=${kind}`, download: true }, `.${kind}`), ' ']) : [])))));
-    if (!here.length) table.append(make('tr', {}, make('td', { colspan: 5, class: 'pale' }, 'Nobody yet: finish an episode within the budget and you are here.')));
+      make('td', {}, make('a', { href: `#watch?agent=${encodeURIComponent(row.agent)}`, 'aria-label': `Watch ${row.who}, return ${number(row.return)}` }, 'watch'),
+        ...(row.episode ? ['episode', 'mp4', 'gif'].map((kind) => make('a', { href: `/api/episode?name=${encodeURIComponent(row.episode)}&kind=${kind}`, download: true }, `.${kind}`)).flatMap((one) => [' ', one]) : [])))));
+    if (!here.length) table.append(make('tr', {}, make('td', { colspan: 4, class: 'pale' }, 'Nobody yet: finish an episode within the budget and you are here.')));
   }
 
   const down = (event) => {

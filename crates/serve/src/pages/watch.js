@@ -20,7 +20,7 @@ const has_task = (agent) => /^(run|zoo|episode):/.test(agent);
 
 export function watch(main, query) {
   const now = Object.fromEntries(Object.entries(STATE).map(([name, usual]) => [name, query.get(name) ?? usual]));
-  let screen = null, scene = null, paused = false, step = 0, ended = false, gone = false;
+  let names = {}, screen = null, scene = null, paused = false, step = 0, ended = false, gone = false;
   const form = make('div', { class: 'row' });
   const link = make('p', { class: 'bad', role: 'alert' });
   const canvases = Object.fromEntries(['colour', ...VIEWS].map((view) => [view, make('canvas', { class: 'view', role: 'img', 'aria-label': `${view} view`, width: 320, height: 240 })]));
@@ -45,7 +45,7 @@ export function watch(main, query) {
   const next = button('Next seed', 'Another episode; of a running training, with its newest checkpoint', () => screen?.ask({ do: 'next' }), { id: 'next' });
   main.append(make('section', { class: 'card head' }, make('h1', { class: 'unseen' }, 'Watch'), form, link),
     make('section', { class: 'stage' },
-      make('div', { class: 'card' }, make('div', { class: 'pair' }, canvases.colour, pair.element), numbers, time.slide, time.line, time.key,
+      make('div', { class: 'card' }, make('div', { class: 'pair' }, make('figure', {}, canvases.colour, pair.first), pair.element), numbers, time.slide, time.line, time.key,
         make('div', { class: 'row' }, go, button('+1 frame', '.', () => tell({ do: 'tic' }), { id: 'tic' }), button('−1 action', 'Left arrow', () => jump(step - 1)), button('+1 action', 'Right arrow', () => jump(step + 1)), speed, next,
           make('label', { class: 'check' }, on, 'go on with the next seed'), copy, film, copied),
         make('p', { class: 'pale' }, 'Keys: Space plays and pauses, the full stop shows one frame (a game tic), arrows go an action back and on.')),
@@ -73,7 +73,7 @@ export function watch(main, query) {
   function begin_second() {
     if (!now.second) return;
     const shared = Object.fromEntries(SHARED.map((name) => [name, now[name] || (name === 'step' ? '0' : 'false')]));
-    pair.begin(now.second, new URLSearchParams({ ...shared, rules: now.rules, env: scene.env, agent: now.second, best: String(now.second.startsWith('run:')) }));
+    pair.begin(names[now.second] ?? now.second, new URLSearchParams({ ...shared, rules: now.rules, env: scene.env, agent: now.second, best: String(now.second.startsWith('run:')) }));
   }
 
   function onwords(words) {
@@ -96,6 +96,7 @@ export function watch(main, query) {
     Object.assign(now, { step: String(step), paused: paused ? 'true' : '' });
     go.textContent = ended ? 'Again' : paused ? 'Play' : 'Pause';
     const over = scene && frame.cost > scene.budget;
+    pair.first.textContent = `${names[now.agent] ?? now.agent}: step ${step}, return ${number(frame.return)}, cost ${number(frame.cost)} of ${number(scene?.budget)}${over ? ', over' : ''}${ended ? ', ended' : ''}`;
     const told = (name, value, kind = '', title = '') => make('span', { title }, name.replaceAll('_', ' '), make('b', { class: kind }, value));
     const terms = (scene?.terms ?? []).length > 1 || (scene?.terms ?? [])[0] !== 'cost' ? scene?.terms ?? [] : [];
     // What the critics expect from here on: in units of returns and costs, where those are known.
@@ -124,6 +125,7 @@ export function watch(main, query) {
     if (gone) return;
     if (!what || !runs || !table) { setTimeout(controls, 1500); return; }
     const groups = { 'fixed policies': what.policies.map((name) => [name, name]), 'the zoo': what.zoo.map((name) => [`zoo:${name}`, name]), runs: runs.runs.slice(0, 500).map((run) => [`run:${run.id}`, run_name(run)]), 'recorded episodes': table.filter((row) => row.episode).slice(0, 200).map((row) => [row.agent, row.episode]) };
+    names = Object.fromEntries(groups.runs);
     if (!Object.values(groups).flat().some(([name]) => name === now.agent)) groups['from the link'] = [[now.agent, now.agent]];
     if (!now.env && !has_task(now.agent)) now.env = FIRST;
     const restart = (name) => (value) => {
