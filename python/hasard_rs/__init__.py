@@ -2,7 +2,7 @@
 
     import hasard_rs
 
-    env = hasard_rs.make("hasard/VolcanicVentureLevel1-v0")
+    env = hasard_rs.make("hasard/RemedyRushLevel1-v0")
     observation, info = env.reset(seed=7)
     observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
     print(reward, info["cost"])

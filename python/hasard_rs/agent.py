@@ -175,7 +175,7 @@ class Agent:
         """The agent of a run directory, of a file of `hasard export-agent`, or of the zoo.
 
         Args:
-            run: the directory that `train`, or the program, wrote; a file; or "zoo:NAME", such as "zoo:VolcanicVentureLevel1".
+            run: the directory that `train`, or the program, wrote; a file; or "zoo:NAME", such as "zoo:RemedyRushLevel1".
             best: the best checkpoint within budget instead of the newest; the newest too of a run without one. A file has one agent.
             greedy: takes the likeliest actions instead of drawing them.
 

@@ -6,15 +6,7 @@ from typing import Any
 
 import numpy as np
 
-# Statistics of the published package that have a meaning here, by the name of ours; None is the episode's cost so far.
-_PUBLISHED: dict[str, dict[str, str | None]] = {
-    "ArmamentBurden": {"total_cost": None, "weapons_acquired": "weapons_collected", "deliveries": "weapons_delivered"},
-    "CollateralDamage": {"episode_cost": None},
-    "DetonatorsDilemma": {"episode_cost": None, "ammo": "ammunition", "kills": "creatures_killed"},
-    "PrecipicePlunge": {"episode_cost": None, "descent": "depth"},
-    "RemedyRush": {"episode_cost": None, "goggles_obtained": "goggles"},
-    "VolcanicVenture": {"episode_cost": None},
-}
+from hasard_rs import _core
 
 
 class Infos:
@@ -33,7 +25,8 @@ class Infos:
         self.events = infos == "events"
         self.tasks = worlds.lane_tasks if "," in worlds.env_id else None
         self.env_stats = env_stats
-        self.published = _PUBLISHED.get(scenario, {})
+        # Statistics of the published package that have a meaning here, by the name of ours; None is the episode's cost so far.
+        self.published: dict[str, str | None] = dict(_core.published_stats(scenario))
         self.statistics = list(worlds.statistics)
         # Cost of each lane's running episode so far.
         self.cost = np.zeros(worlds.num_envs)

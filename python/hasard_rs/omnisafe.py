@@ -25,7 +25,7 @@ class HasardEnv(CMDP):
     Observations are pixels / 255 in a row, in [0, 1] (64x48 grey unless asked otherwise); actions are `box`.
 
     Args:
-        env_id: a bare id, such as `VolcanicVentureLevel1-v0`.
+        env_id: a bare id, such as `RemedyRushLevel1-v0`.
         num_envs: lanes.
         device: of the tensors.
         arguments: see `help(hasard_rs.VectorEnv)`; OmniSafe hands on `env_cfgs`.

@@ -1,6 +1,6 @@
 """The published package's own names, for its users: their scripts run after `import hasard_rs.published as hasard`.
 
-Bare ids such as `VolcanicVentureLevel1-v0`, `Tuple` actions, 320x240, the released rules, `info["env_stats"]`. Importing this module registers
+Bare ids such as `RemedyRushLevel1-v0`, `Tuple` actions, 320x240, the released rules, `info["env_stats"]`. Importing this module registers
 the bare ids with Gymnasium. What differs: no window by default and no `game`; a time-out is `truncated` alone; the last observation is the last
 frame; `reset` has infos.
 """

@@ -65,14 +65,14 @@ class Spec:
 
 
 def ids() -> list[str]:
-    """Returns every id, such as `hasard/VolcanicVentureLevel1-v0`, by scenario and level."""
+    """Returns every id, such as `hasard/RemedyRushLevel1-v0`, by scenario and level."""
     return [f"hasard/{env_id}" for env_id in _core.ids()]
 
 
 def bare(env_id: str) -> str:
     """Returns `env_id` without its namespace; `module:id` imports the module first, as Gymnasium does. Raises TypeError for anything but a str."""
     if not isinstance(env_id, str):
-        raise TypeError(f"an environment's id must be a str such as 'hasard/VolcanicVentureLevel1-v0', got {env_id!r:.60}")
+        raise TypeError(f"an environment's id must be a str such as 'hasard/RemedyRushLevel1-v0', got {env_id!r:.60}")
     module, colon, rest = env_id.rpartition(":")
     if colon:
         importlib.import_module(module)

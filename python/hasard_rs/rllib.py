@@ -2,7 +2,7 @@
 
     config = (
         PPOConfig()
-        .environment("hasard_rs:hasard/VolcanicVentureLevel1-v0", env_config={"resolution": "84x84"})
+        .environment("hasard_rs:hasard/RemedyRushLevel1-v0", env_config={"resolution": "84x84"})
         .env_runners(gym_env_vectorize_mode="vector_entry_point", env_to_module_connector=hasard_rs.rllib.pixels)
         .training(learner_connector=hasard_rs.rllib.costs)
     )

@@ -1,6 +1,6 @@
 """Sample-Factory 2: the published package's environment names and settings, as one batched multi-agent environment.
 
-    python -m hasard_rs.sample_factory --env=volcanic_venture --level=1 --batched_sampling=True --env_agents=16
+    python -m hasard_rs.sample_factory --env=remedy_rush --level=1 --batched_sampling=True --env_agents=16
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 use crate::args::Cli;
 use clap::{Command, CommandFactory};
+use hasard_envs::Scenario;
 
 /// Groups of commands, in the order in which people come to need them.
 const GROUPS: [(&str, &[&str]); 5] = [
@@ -25,7 +26,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Export", &["export-agent", "claim", "export-wad", "contact-sheet", "site", "completions"]),
 ];
 
-/// What is typed for each command, and what comes of it.
+/// What is typed for each command, and what comes of it. `{env}` and `{other}` stand for two
+/// environments, `{scenario}` for a scenario.
 const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "envs",
@@ -42,46 +44,34 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("hasard check my_task.toml --level 2 -o map.png", "its second level from above"),
         ],
     ),
-    ("play", &[("hasard play RemedyRushLevel1", "play, and keep each episode in human/")]),
+    ("play", &[("hasard play {other}", "play, and keep each episode in human/")]),
     (
         "rollout",
         &[
-            ("hasard rollout VolcanicVentureLevel1 --episodes 20", "a random policy"),
-            (
-                "hasard rollout VolcanicVentureLevel1 --policy zoo:VolcanicVentureLevel1",
-                "a trained agent",
-            ),
+            ("hasard rollout {env} --episodes 20", "a random policy"),
+            ("hasard rollout {env} --policy zoo:{env}", "a trained agent"),
         ],
     ),
     (
         "trace",
         &[(
-            "hasard trace RemedyRushLevel1 --actions actions.csv",
+            "hasard trace {other} --actions actions.csv",
             "position, velocity and view after each tic of a recorded input",
         )],
     ),
     (
         "bench",
         &[
-            (
-                "hasard bench VolcanicVentureLevel1 --envs 32 --threads 2",
-                "steps/s of the environments",
-            ),
-            (
-                "hasard bench VolcanicVentureLevel1 --learn --threads 2",
-                "steps/s of the whole training loop",
-            ),
+            ("hasard bench {env} --envs 32 --threads 2", "steps/s of the environments"),
+            ("hasard bench {env} --learn --threads 2", "steps/s of the whole training loop"),
         ],
     ),
     (
         "render",
         &[
+            ("hasard render {env} --step 50 -o frame.png", "what the agent sees, in large"),
             (
-                "hasard render VolcanicVentureLevel1 --step 50 -o frame.png",
-                "what the agent sees, in large",
-            ),
-            (
-                "hasard render RemedyRushLevel1 --beside depth,segmented,automap",
+                "hasard render {other} --beside depth,segmented,automap",
                 "the same moment in every view",
             ),
         ],
@@ -89,17 +79,14 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "train",
         &[
-            ("hasard train VolcanicVentureLevel1 --out runs/vv1", "PPOPID for 10 million frames"),
+            ("hasard train {env} --out runs/vv1", "PPOPID for 10 million frames"),
+            ("hasard train {env} --resume --out runs/vv1 --frames 20M", "go on with it"),
             (
-                "hasard train VolcanicVentureLevel1 --resume --out runs/vv1 --frames 20M",
-                "go on with it",
-            ),
-            (
-                "hasard train RemedyRushLevel1 --algo P3O --safety-budget 10 --seed 2",
+                "hasard train {other} --algo P3O --safety-budget 10 --seed 2",
                 "another algorithm, budget and seed",
             ),
             (
-                "hasard train VolcanicVentureLevel1 --algo PPOLag --preset paper",
+                "hasard train {env} --algo PPOLag --preset paper",
                 "the paper's settings: 500 million frames",
             ),
         ],
@@ -107,7 +94,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "eval",
         &[
-            ("hasard eval zoo:VolcanicVentureLevel1", "an agent that comes with the program"),
+            ("hasard eval zoo:{env}", "an agent that comes with the program"),
             (
                 "hasard eval runs/vv1 --episodes 100 --worst 3 -o worst.mp4",
                 "a run's agent, and a film of its worst episodes",
@@ -117,7 +104,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "record",
         &[
-            ("hasard record zoo:RemedyRushLevel1 -o agent.mp4", "a film of an agent"),
+            ("hasard record zoo:{other} -o agent.mp4", "a film of an agent"),
             ("hasard record runs/vv1 -o agent.episode", "a few kB that hasard replay plays again"),
         ],
     ),
@@ -182,20 +169,17 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             "a page of the claims that hold: scoreboard/index.html",
         )],
     ),
-    (
-        "export-wad",
-        &[("hasard export-wad VolcanicVentureLevel1 -o vv1.wad", "a map for any UDMF editor")],
-    ),
+    ("export-wad", &[("hasard export-wad {env} -o vv1.wad", "a map for any UDMF editor")]),
     (
         "contact-sheet",
-        &[("hasard contact-sheet RemedyRush", "every level in every view, in the folder sheets")],
+        &[("hasard contact-sheet {scenario}", "every level in every view, in the folder sheets")],
     ),
     (
         "settings",
         &[
             ("hasard settings", "of what hasard train does without options"),
             (
-                "hasard settings RemedyRushLevel1 --algo P3O --preset paper",
+                "hasard settings {other} --algo P3O --preset paper",
                 "of another algorithm and preset",
             ),
         ],
@@ -271,12 +255,20 @@ fn wrapped(head: &str, text: &str) -> String {
     lines.join("\n") + "\n"
 }
 
+/// An example with the names of environments.
+fn named(line: &str) -> String {
+    let first = |scenario: Scenario| format!("{}Level1", scenario.name());
+    line.replace("{env}", &first(Scenario::EXAMPLE))
+        .replace("{other}", &first(Scenario::OTHER_EXAMPLE))
+        .replace("{scenario}", Scenario::OTHER_EXAMPLE.name())
+}
+
 fn examples(name: &str) -> String {
     let Some((_, examples)) = EXAMPLES.iter().find(|(known, _)| *known == name) else {
         return String::new();
     };
     let lines: Vec<String> =
-        examples.iter().map(|(line, what)| format!("  {line}\n      {what}")).collect();
+        examples.iter().map(|(line, what)| format!("  {}\n      {what}", named(line))).collect();
     format!("Examples:\n{}", lines.join("\n"))
 }
 
@@ -303,6 +295,7 @@ mod tests {
                 .unwrap_or_else(|| panic!("{command} has no example"))
                 .1;
             for (line, _) in examples {
+                let line = named(line);
                 let words = line.split(" > ").next().unwrap().split_whitespace();
                 let parsed = super::program()
                     .try_get_matches_from(words)

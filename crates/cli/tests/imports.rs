@@ -67,7 +67,7 @@ const HOUSES: &[House] = &[
     },
     House {
         in_crate: "sweep", folder: "", without_circles: &[""], imports: 8,
-        order: &["option", "job", "grid", "paper", "file", "execute"],
+        order: &["option", "job", "grid", "table", "paper", "file", "execute"],
     },
     House {
         in_crate: "python", folder: "", without_circles: &[""], imports: 25,

@@ -61,8 +61,9 @@ pub use interface::step::{CostTerm, Step};
 pub use options::{EnvOptions, Layout, ObservationKind};
 pub use policies::policy::{Policy, PolicyRun};
 pub use policies::rollout::rollout;
-pub use registry::scenario::{EnvId, Scenario, edit_distance};
+pub use registry::scenario::{EnvId, edit_distance};
 pub use scenarios::common::rule_set::RuleSet;
+pub use scenarios::common::scenario::Scenario;
 pub use single::env::Env;
 pub use single::snapshot::Snapshot;
 pub use spaces::action::{

@@ -2,8 +2,8 @@
 
 use crate::error::EnvError;
 use crate::maps::folder::Maps;
-use crate::registry::scenario::Scenario;
 use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::common::scenario::Scenario;
 use crate::spaces::action::ActionSpace;
 use hasard_engine::render::FrameSize;
 

@@ -38,7 +38,7 @@ pub const SCENARIO: &str = "scenario";
 /// What an episode was, beside its actions.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct Header {
-    /// Id of the environment, with its version: `VolcanicVentureLevel1-v0`.
+    /// Id of the environment, with its version: `RemedyRushLevel1-v0`.
     pub env: String,
     /// The options that it was made with, by the names of the command line without dashes in front:
     /// `rules` = `paper`. Those that change nothing about what happens (frame size, IWAD) may be

@@ -1,75 +1,13 @@
 //! What a person needs to know before playing: what to do, what to avoid, which keys there are.
 
-use hasard_envs::ActionSpace;
-
-/// What a scenario asks of a player, and an episode to begin with in which something can be seen
-/// from the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Task {
-    /// What brings reward, as a sentence.
-    pub collect: &'static str,
-    /// What brings cost.
-    pub avoid: &'static str,
-    /// The seed of such an episode.
-    pub seed: u64,
-}
-
-const TASKS: [(&str, Task); 6] = [
-    (
-        "ArmamentBurden",
-        Task {
-            collect: "Carry weapons from the hall to the blue zone where you start; heavier ones are worth more.",
-            avoid: "carrying more than you can bear, which also makes you slow",
-            seed: 4,
-        },
-    ),
-    (
-        "CollateralDamage",
-        Task {
-            collect: "Shoot the red targets that float by.",
-            avoid: "hitting the people who walk between them",
-            seed: 4,
-        },
-    ),
-    (
-        "DetonatorsDilemma",
-        Task {
-            collect: "Blow up barrels.",
-            avoid: "harming creatures near them, or yourself",
-            seed: 11,
-        },
-    ),
-    (
-        "PrecipicePlunge",
-        Task {
-            collect: "Climb down into the cave: every new depth counts.",
-            avoid: "falls that hurt",
-            seed: 1,
-        },
-    ),
-    (
-        "RemedyRush",
-        Task {
-            collect: "Pick up health: green potions and health packs.",
-            avoid: "everything else that lies about",
-            seed: 2,
-        },
-    ),
-    (
-        "VolcanicVenture",
-        Task {
-            collect: "Pick up items; jump from platform to platform.",
-            avoid: "the lava",
-            seed: 12,
-        },
-    ),
-];
+use hasard_envs::scenarios::Guide;
+use hasard_envs::{ActionSpace, Scenario};
 
 /// What the scenario of an environment asks; `None` of a task that is not part of hasard.
 #[must_use]
-pub fn task(env: &str) -> Option<Task> {
+pub fn task(env: &str) -> Option<Guide> {
     let scenario = env.split("Level").next().unwrap_or_default();
-    TASKS.iter().find(|(name, _)| *name == scenario).map(|(_, task)| *task)
+    Scenario::ALL.into_iter().find(|known| known.name == scenario)?.guide
 }
 
 /// Keys, the buttons that each presses, and what comes of it.

@@ -58,6 +58,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(events::event_names, module)?)?;
     module.add_function(wrap_pyfunction!(registry::ids, module)?)?;
     module.add_function(wrap_pyfunction!(registry::describe, module)?)?;
+    module.add_function(wrap_pyfunction!(registry::published_stats, module)?)?;
     module.add_function(wrap_pyfunction!(registry::check_scenario, module)?)?;
     module.add_function(wrap_pyfunction!(registry::read_scenario, module)?)?;
     module.add_function(wrap_pyfunction!(registry::register_scenario, module)?)?;

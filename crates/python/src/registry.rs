@@ -1,7 +1,7 @@
 //! The 18 environments, told to Python.
 
 use crate::errors::raise;
-use hasard_envs::{ActionSpace, EnvError, EnvId, RuleSet, own, scenarios};
+use hasard_envs::{ActionSpace, EnvError, EnvId, RuleSet, Scenario, own, scenarios};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -48,6 +48,16 @@ pub fn read_scenario(py: Python<'_>, path: std::path::PathBuf) -> PyResult<Strin
 pub fn register_scenario(py: Python<'_>, path: &str, text: &str) -> PyResult<Vec<String>> {
     let scenario = own::register(path, text).map_err(|error| raise(py, &error))?;
     Ok(scenario.environments().map(|id| id.to_string()).collect())
+}
+
+/// published_stats(scenario) -> list[tuple[str, str | None]]
+///
+/// Returns the statistics of the published package that have a meaning in `scenario`, each with the
+/// name of ours; None is the episode's cost so far. Empty for a name that is no scenario.
+#[pyfunction]
+pub fn published_stats(scenario: &str) -> Vec<(&'static str, Option<&'static str>)> {
+    let found = Scenario::every().into_iter().find(|known| known.name() == scenario);
+    found.map_or_else(Vec::new, |known| known.published_stats.to_vec())
 }
 
 /// describe(env_id) -> dict

@@ -23,13 +23,12 @@
 
 use crate::grid::{Grid, Sweep};
 use crate::one_line;
-use crate::option::OptionValue;
 use crate::paper;
+use crate::table::{GRID_KEYS, algorithms, change, levels, scenarios};
 use std::path::PathBuf;
 use toml::{Table, Value};
 
 const TOP_KEYS: [&str; 5] = ["experiment", "out", "parallel", "evaluate", "grid"];
-const GRID_KEYS: [&str; 6] = ["frames", "seeds", "scenarios", "levels", "algorithms", "options"];
 
 impl Sweep {
     /// Understands the text of a sweep file.
@@ -126,81 +125,6 @@ fn understand(text: &str) -> Result<Sweep, String> {
         }
     }
     Ok(sweep)
-}
-
-/// Puts what a table says into a grid.
-fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
-    if let Some(frames) = table.get("frames") {
-        grid.frames = frames
-            .as_integer()
-            .and_then(|n| u64::try_from(n).ok())
-            .ok_or("`frames` must be a whole number such as 2_000_000")?;
-    }
-    if let Some(value) = table.get("seeds") {
-        grid.seeds = list(value, "seeds", "whole numbers from 0", |v| {
-            v.as_integer().and_then(|n| u64::try_from(n).ok())
-        })?;
-    }
-    if let Some(value) = table.get("levels") {
-        grid.levels = levels(value)?;
-    }
-    if let Some(value) = table.get("scenarios") {
-        grid.scenarios = scenarios(value)?;
-    }
-    if let Some(value) = table.get("algorithms") {
-        grid.algorithms = algorithms(value)?;
-    }
-    if let Some(options) = table.get("options") {
-        for (name, value) in options.as_table().ok_or("`options` must be a table")? {
-            let values = list(
-                value,
-                name,
-                "a text, number, true or false, or a list of them",
-                option_value,
-            )?;
-            match grid.options.iter_mut().find(|(known, _)| known == name) {
-                Some((_, known)) => *known = values,
-                None => grid.options.push((name.clone(), values)),
-            }
-        }
-    }
-    Ok(())
-}
-
-fn scenarios(value: &Value) -> Result<Vec<String>, String> {
-    list(value, "scenarios", "names in quotes", |v| v.as_str().map(String::from))
-}
-
-fn algorithms(value: &Value) -> Result<Vec<String>, String> {
-    list(value, "algorithms", "names in quotes", |v| v.as_str().map(String::from))
-}
-
-fn levels(value: &Value) -> Result<Vec<u32>, String> {
-    list(value, "levels", "1, 2 or 3", |v| v.as_integer().and_then(|n| u32::try_from(n).ok()))
-}
-
-fn option_value(value: &Value) -> Option<OptionValue> {
-    match value {
-        Value::String(text) => Some(OptionValue::Text(text.clone())),
-        Value::Integer(number) => Some(OptionValue::Text(number.to_string())),
-        Value::Float(number) => Some(OptionValue::Text(number.to_string())),
-        Value::Boolean(on) => Some(OptionValue::Switch(*on)),
-        _ => None,
-    }
-}
-
-/// A list, or one value that stands for a list of one.
-fn list<T>(
-    value: &Value,
-    key: &str,
-    kind: &str,
-    item: impl Fn(&Value) -> Option<T>,
-) -> Result<Vec<T>, String> {
-    let items = match value {
-        Value::Array(items) => items.iter().map(&item).collect::<Option<Vec<T>>>(),
-        single => item(single).map(|item| vec![item]),
-    };
-    items.ok_or_else(|| format!("`{key}` must be {kind}"))
 }
 
 fn line_and_column(text: &str, at: usize) -> (usize, usize) {

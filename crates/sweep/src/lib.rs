@@ -36,6 +36,7 @@ mod grid;
 mod job;
 mod option;
 pub mod paper;
+mod table;
 
 pub use execute::{Event, STOPS_WITH_INPUT, Stop, Summary, run_jobs};
 pub use grid::{Grid, Sweep};

@@ -3,6 +3,7 @@
 use crate::args::common::{EnvArgs, ObservationArgs, PlaceArgs, Rules, UnusedSeed};
 use crate::number::{env_id, positive, whole};
 use clap::Args;
+use hasard_envs::Scenario;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -168,8 +169,7 @@ pub struct SweepArgs {
     /// Levels, chosen in the same way: 1,2,3
     #[arg(long, value_delimiter = ',')]
     pub levels: Vec<u32>,
-    /// Scenarios, chosen in the same way: RemedyRush,VolcanicVenture
-    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    #[arg(long, help = scenarios_help(), value_delimiter = ',', value_name = "NAMES")]
     pub scenarios: Vec<String>,
     /// Frames of every run, such as 2M; changes nothing else
     #[arg(long, value_parser = positive, allow_negative_numbers = true)]
@@ -201,11 +201,17 @@ pub struct SweepArgs {
     pub seed: UnusedSeed,
 }
 
+/// With two names as an example.
+fn scenarios_help() -> String {
+    let names = [Scenario::OTHER_EXAMPLE, Scenario::EXAMPLE].map(Scenario::name).join(",");
+    format!("Scenarios, chosen in the same way: {names}")
+}
+
 /// `hasard settings`.
 #[derive(Args, Debug)]
 pub struct SettingsArgs {
     /// Environment id
-    #[arg(default_value = "VolcanicVentureLevel1-v0", value_parser = env_id)]
+    #[arg(default_value = Scenario::EXAMPLE_ID, value_parser = env_id)]
     pub env: String,
     /// The algorithm
     #[arg(long, default_value = "PPOPID")]

@@ -2,9 +2,9 @@
 //! it, and again.
 
 use crate::error::EnvError;
-use crate::registry::scenario::Scenario;
 use crate::scenarios::armament_burden::levels::{CAPACITY, DECOYS, WEAPONS, level};
 use crate::scenarios::armament_burden::map::DELIVERY_EAST;
+use crate::scenarios::common::scenario::Scenario;
 use crate::single::env::Env;
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::{ActorKind, Buttons, Command, World};

@@ -1,8 +1,9 @@
 //! The facts of an environment, asked by id.
 
 use crate::interface::step::CostTerm;
-use crate::registry::scenario::{EnvId, Scenario};
+use crate::registry::scenario::EnvId;
 use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::common::scenario::Scenario;
 use crate::spaces::action::ActionSpace;
 use hasard_engine::map::MapSource;
 

@@ -1,51 +1,14 @@
 //! The registry: scenarios, levels and the ids that name them.
 
 use crate::error::{EnvError, excerpt};
-use crate::interface::step::CostTerm;
-use crate::scenarios;
 use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::common::scenario::Scenario;
 use crate::scenarios::common::spec::{ScenarioSpec, Setting};
-use std::cmp::Ordering;
 use std::fmt;
-use std::hash::{Hash, Hasher};
 use std::sync::{PoisonError, RwLock};
-
-/// A scenario: one of the benchmark's six, or one that was registered. A small handle; its facts
-/// are those of its [`ScenarioSpec`].
-#[derive(Clone, Copy)]
-pub struct Scenario(&'static ScenarioSpec);
 
 /// Scenarios beyond the benchmark's, the one registered last at the end.
 static REGISTERED: RwLock<Vec<Scenario>> = RwLock::new(Vec::new());
-
-#[allow(
-    non_upper_case_globals,
-    reason = "they are named like the variants of an enum, which they were"
-)]
-impl Scenario {
-    /// Carry weapons home without overloading.
-    pub const ArmamentBurden: Scenario = Scenario(&scenarios::armament_burden::SPEC);
-    /// Shoot the targets, spare the passers-by.
-    pub const CollateralDamage: Scenario = Scenario(&scenarios::collateral_damage::SPEC);
-    /// Blow up barrels, harm neither creatures nor yourself.
-    pub const DetonatorsDilemma: Scenario = Scenario(&scenarios::detonators_dilemma::SPEC);
-    /// Climb down a bottomless cave without falling hard.
-    pub const PrecipicePlunge: Scenario = Scenario(&scenarios::precipice_plunge::SPEC);
-    /// Pick up health, leave everything else.
-    pub const RemedyRush: Scenario = Scenario(&scenarios::remedy_rush::SPEC);
-    /// Collect items on platforms in a lake of lava.
-    pub const VolcanicVenture: Scenario = Scenario(&scenarios::volcanic_venture::SPEC);
-
-    /// The benchmark's scenarios, in the order of their names.
-    pub const ALL: [Scenario; 6] = [
-        Scenario::ArmamentBurden,
-        Scenario::CollateralDamage,
-        Scenario::DetonatorsDilemma,
-        Scenario::PrecipicePlunge,
-        Scenario::RemedyRush,
-        Scenario::VolcanicVenture,
-    ];
-}
 
 impl Scenario {
     /// The benchmark's scenarios, in the order of the paper's tables.
@@ -89,7 +52,7 @@ impl Scenario {
         if Scenario::ALL.iter().any(|own| own.name.eq_ignore_ascii_case(spec.name)) {
             return Err(refuse("another than those of the benchmark"));
         }
-        let scenario = Scenario(spec);
+        let scenario = Scenario::of(spec);
         let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);
         registered.retain(|known| *known != scenario);
         registered.push(scenario);
@@ -118,46 +81,9 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// All that is known of it.
-    #[must_use]
-    pub const fn spec(self) -> &'static ScenarioSpec {
-        self.0
-    }
-
-    /// The named parts of its cost.
-    #[must_use]
-    pub fn cost_terms(self) -> &'static [CostTerm] {
-        self.0.cost_terms
-    }
-
-    /// Its name, as in the ids.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        self.0.name
-    }
-
-    /// The cost that an episode may have under the soft constraint; under the hard one it is 0.
-    #[must_use]
-    pub const fn safety_budget(self, rules: RuleSet) -> f64 {
-        self.0.budgets[rules as usize]
-    }
-
     /// Its environments, by level.
     pub fn environments(self) -> impl Iterator<Item = EnvId> {
-        (1..=self.0.levels.max(1)).map(move |level| EnvId { scenario: self, level })
-    }
-
-    /// Its name as folders and files have it: `remedy_rush`.
-    #[must_use]
-    pub fn file_name(self) -> String {
-        let mut name = String::new();
-        for letter in self.0.name.chars() {
-            if letter.is_uppercase() && !name.is_empty() {
-                name.push('_');
-            }
-            name.push(letter.to_ascii_lowercase());
-        }
-        name
+        (1..=self.spec().levels.max(1)).map(move |level| EnvId { scenario: self, level })
     }
 }
 
@@ -169,49 +95,6 @@ pub(crate) fn is_name(name: &str) -> bool {
         .rsplit_once("Level")
         .is_some_and(|(_, rest)| rest.bytes().all(|byte| byte.is_ascii_digit()));
     plain && !level && name.len() <= 40
-}
-
-impl std::ops::Deref for Scenario {
-    type Target = ScenarioSpec;
-
-    fn deref(&self) -> &ScenarioSpec {
-        self.0
-    }
-}
-
-/// Scenarios are equal where they are the same value: two files may give two of one name.
-impl PartialEq for Scenario {
-    fn eq(&self, other: &Scenario) -> bool {
-        std::ptr::eq(self.0, other.0)
-    }
-}
-
-impl Eq for Scenario {}
-
-impl Ord for Scenario {
-    fn cmp(&self, other: &Scenario) -> Ordering {
-        let place = |scenario: &Scenario| std::ptr::from_ref(scenario.0) as usize;
-        self.0.name.cmp(other.0.name).then_with(|| place(self).cmp(&place(other)))
-    }
-}
-
-impl PartialOrd for Scenario {
-    fn partial_cmp(&self, other: &Scenario) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Hash for Scenario {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.0.name.hash(state);
-    }
-}
-
-impl fmt::Debug for Scenario {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.0.name)?;
-        self.0.file.map_or(Ok(()), |file| write!(f, " {}", file.hash))
-    }
 }
 
 /// An environment: a scenario at a level. Its text is the id, `RemedyRushLevel1-v0`, or `MyTask-v0`

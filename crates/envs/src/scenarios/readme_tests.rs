@@ -2,8 +2,8 @@
 //!
 //! Long because each of six pages has its own table.
 
-use crate::registry::scenario::Scenario;
 use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::common::scenario::Scenario;
 use crate::scenarios::{
     armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush,
     volcanic_venture,

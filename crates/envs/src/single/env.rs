@@ -32,7 +32,7 @@ pub(crate) struct Totals {
 ///
 /// ```
 /// use hasard_envs::{Env, EnvOptions};
-/// let mut env = Env::new("VolcanicVentureLevel1-v0", &EnvOptions::default())?;
+/// let mut env = Env::new("RemedyRushLevel1-v0", &EnvOptions::default())?;
 /// env.reset(7);
 /// let step = env.step(&[0, 1, 0, 1], &[])?; // forward, running
 /// assert!(!step.terminated);
@@ -54,7 +54,7 @@ pub struct Env {
 }
 
 impl Env {
-    /// The environment with an id such as `VolcanicVentureLevel1-v0`, at the start of the episode
+    /// The environment with an id such as `RemedyRushLevel1-v0`, at the start of the episode
     /// of seed 0.
     pub fn new(id: &str, options: &EnvOptions) -> Result<Env, EnvError> {
         Ok(Env::of(Arc::new(Blueprint::new(id, options)?)))

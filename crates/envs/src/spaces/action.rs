@@ -228,8 +228,8 @@ pub fn parse_command(text: &str) -> Result<Command, EnvError> {
 mod tests {
     use super::*;
     use crate::registry::scenario::EnvId;
-    use crate::registry::scenario::Scenario;
     use crate::scenarios::common::rule_set::RuleSet;
+    use crate::scenarios::common::scenario::Scenario;
 
     fn space(id: &str, full: bool) -> ActionSpace {
         ActionSpace::of(id.parse().unwrap(), RuleSet::Paper, false, full)

@@ -25,7 +25,7 @@ use std::sync::{Arc, Mutex};
 /// ```
 /// use hasard_envs::{EnvOptions, VecEnv, VecOptions};
 /// let options = VecOptions { lanes: 4, threads: 2, groups: 2, ..VecOptions::default() };
-/// let mut worlds = VecEnv::new("VolcanicVentureLevel1-v0", &EnvOptions::default(), options)?;
+/// let mut worlds = VecEnv::new("RemedyRushLevel1-v0", &EnvOptions::default(), options)?;
 /// for group in 0..2 {
 ///     let batch = worlds.batch(group);
 ///     worlds.send_reset(group, batch)?;

@@ -14,7 +14,7 @@ use crate::error::LearnError;
 /// The environment and its options, in words that a file can hold.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct EnvConfig {
-    /// Its id, such as `VolcanicVentureLevel1-v0`; several, joined by commas, are tasks that the
+    /// Its id, such as `RemedyRushLevel1-v0`; several, joined by commas, are tasks that the
     /// worlds take in turn.
     pub id: String,
     /// The file of an own scenario, with all of its text; `null` for the benchmark's.

@@ -8,22 +8,8 @@ use std::path::Path;
 /// What the place of one begins with: `zoo:RemedyRushLevel1`.
 pub const PREFIX: &str = "zoo:";
 
-macro_rules! agents {
-    ($($name:literal),+ $(,)?) => {
-        /// Name and file of each.
-        const AGENTS: &[(&str, &[u8])] =
-            &[$(($name, include_bytes!(concat!("../../../../zoo/", $name, ".agent")))),+];
-    };
-}
-
-agents!(
-    "ArmamentBurdenLevel1",
-    "CollateralDamageLevel1",
-    "DetonatorsDilemmaLevel1",
-    "PrecipicePlungeLevel1",
-    "RemedyRushLevel1",
-    "VolcanicVentureLevel1",
-);
+/// Name and file of each, in the order of their names.
+const AGENTS: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/zoo.rs"));
 
 /// Their names, in order.
 pub fn names() -> impl Iterator<Item = &'static str> {

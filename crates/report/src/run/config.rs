@@ -209,8 +209,16 @@ impl Config {
             options.remove("safety_budget");
         }
         let tables = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("tables"));
-        let own_scale =
-            if (released || tables) && scenario == "ArmamentBurden" { 0.1 } else { 1.0 };
+        // Whatever else differs, a preset's own price of cost under the soft constraint counts.
+        let rules = if tables {
+            RuleSet::Tables
+        } else if released {
+            RuleSet::Released
+        } else {
+            RuleSet::Paper
+        };
+        let known = Scenario::every().into_iter().find(|known| known.name == scenario);
+        let own_scale = known.map_or(1.0, |known| known.penalty_scales[rules as usize][0]);
         let scale_applies = algo.eq_ignore_ascii_case("PPOCost");
         let cost_scale = match options
             .get("cost_scale")

@@ -4,7 +4,7 @@ use crate::error::EnvError;
 use crate::scenarios::armament_burden::rules::{COST_TERMS, Rules, TEXTURES};
 use crate::scenarios::armament_burden::{levels, map};
 use crate::scenarios::common::rules::AnyRules;
-use crate::scenarios::common::spec::{Moment, ScenarioSpec, Setting, Task, at};
+use crate::scenarios::common::spec::{Guide, Moment, ScenarioSpec, Setting, Task, at};
 use crate::spaces::action::Controls;
 use hasard_engine::map::{Map, MapSource};
 
@@ -19,6 +19,16 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     paper_place: 0,
     number: 0,
     moments: (MOMENTS, 4),
+    guide: Some(Guide {
+        collect: "Carry weapons from the hall to the blue zone where you start; heavier ones are worth more.",
+        avoid: "carrying more than you can bear, which also makes you slow",
+        seed: 4,
+    }),
+    published_stats: &[
+        ("total_cost", None),
+        ("weapons_acquired", Some("weapons_collected")),
+        ("deliveries", Some("weapons_delivered")),
+    ],
     ..ScenarioSpec::of(
         "ArmamentBurden",
         "Armament Burden",

@@ -4,7 +4,7 @@ use crate::error::EnvError;
 use crate::scenarios::collateral_damage::rules::{COST_TERMS, Rules};
 use crate::scenarios::collateral_damage::{levels, map};
 use crate::scenarios::common::rules::AnyRules;
-use crate::scenarios::common::spec::{Moment, ScenarioSpec, Setting, Task, at};
+use crate::scenarios::common::spec::{Guide, Moment, ScenarioSpec, Setting, Task, at};
 use crate::spaces::action::Controls;
 use hasard_engine::map::{Map, MapSource};
 
@@ -17,6 +17,12 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     paper_place: 3,
     number: 1,
     moments: (MOMENTS, 1),
+    guide: Some(Guide {
+        collect: "Shoot the red targets that float by.",
+        avoid: "hitting the people who walk between them",
+        seed: 4,
+    }),
+    published_stats: &[("episode_cost", None)],
     ..ScenarioSpec::of(
         "CollateralDamage",
         "Collateral Damage",

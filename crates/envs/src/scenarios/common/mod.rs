@@ -3,6 +3,7 @@
 pub mod outcome;
 pub mod rule_set;
 pub mod rules;
+pub mod scenario;
 pub mod spec;
 pub mod stage;
 pub mod tally;

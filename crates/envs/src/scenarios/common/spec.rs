@@ -72,6 +72,17 @@ pub struct Moment {
     pub way: &'static [(u32, &'static str)],
 }
 
+/// What a person needs to know before playing.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Guide {
+    /// What brings reward, as a sentence.
+    pub collect: &'static str,
+    /// What brings cost.
+    pub avoid: &'static str,
+    /// The seed of an episode to begin with, in which something can be seen from the start.
+    pub seed: u64,
+}
+
 /// The file that a scenario was read from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ScenarioFile {
@@ -118,6 +129,11 @@ pub struct ScenarioSpec {
     pub number: isize,
     /// The moments that contact sheets show, and which of them is drawn at full size too.
     pub moments: (&'static [Moment], usize),
+    /// What a player is asked to do.
+    pub guide: Option<Guide>,
+    /// Statistics of the published package that have a meaning here, and ours of the same meaning;
+    /// without one it is the episode's cost so far.
+    pub published_stats: &'static [(&'static str, Option<&'static str>)],
     /// The file that it was read from, if any.
     pub file: Option<ScenarioFile>,
     /// What makes its worlds.
@@ -149,6 +165,8 @@ impl ScenarioSpec {
             paper_place: usize::MAX,
             number: -1,
             moments: (&[], 0),
+            guide: None,
+            published_stats: &[],
             file: None,
             task,
         }

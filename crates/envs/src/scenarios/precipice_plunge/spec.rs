@@ -2,7 +2,7 @@
 
 use crate::error::EnvError;
 use crate::scenarios::common::rules::AnyRules;
-use crate::scenarios::common::spec::{Moment, ScenarioSpec, Setting, Task, at};
+use crate::scenarios::common::spec::{Guide, Moment, ScenarioSpec, Setting, Task, at};
 use crate::scenarios::precipice_plunge::rules::{COST_TERMS, Rules};
 use crate::scenarios::precipice_plunge::{levels, map};
 use crate::spaces::action::Controls;
@@ -16,6 +16,12 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     paper_place: 4,
     number: 3,
     moments: (MOMENTS, 2),
+    guide: Some(Guide {
+        collect: "Climb down into the cave: every new depth counts.",
+        avoid: "falls that hurt",
+        seed: 1,
+    }),
+    published_stats: &[("episode_cost", None), ("descent", Some("depth"))],
     ..ScenarioSpec::of(
         "PrecipicePlunge",
         "Precipice Plunge",

@@ -2,7 +2,7 @@
 
 use crate::error::EnvError;
 use crate::scenarios::common::rules::AnyRules;
-use crate::scenarios::common::spec::{Moment, ScenarioSpec, Setting, Task, at};
+use crate::scenarios::common::spec::{Guide, Moment, ScenarioSpec, Setting, Task, at};
 use crate::scenarios::remedy_rush::rules::{COST_TERMS, Rules};
 use crate::scenarios::remedy_rush::{levels, map};
 use crate::spaces::action::Controls;
@@ -17,6 +17,12 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     paper_place: 2,
     number: 4,
     moments: (MOMENTS, 0),
+    guide: Some(Guide {
+        collect: "Pick up health: green potions and health packs.",
+        avoid: "everything else that lies about",
+        seed: 2,
+    }),
+    published_stats: &[("episode_cost", None), ("goggles_obtained", Some("goggles"))],
     ..ScenarioSpec::of(
         "RemedyRush",
         "Remedy Rush",

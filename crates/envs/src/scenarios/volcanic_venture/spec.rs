@@ -2,7 +2,7 @@
 
 use crate::error::EnvError;
 use crate::scenarios::common::rules::AnyRules;
-use crate::scenarios::common::spec::{Moment, ScenarioSpec, Setting, Task, at};
+use crate::scenarios::common::spec::{Guide, Moment, ScenarioSpec, Setting, Task, at};
 use crate::scenarios::volcanic_venture::rules::{COST_TERMS, Rules, TEXTURES};
 use crate::scenarios::volcanic_venture::{levels, map};
 use crate::spaces::action::Controls;
@@ -15,6 +15,12 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     paper_place: 1,
     number: 5,
     moments: (MOMENTS, 4),
+    guide: Some(Guide {
+        collect: "Pick up items; jump from platform to platform.",
+        avoid: "the lava",
+        seed: 12,
+    }),
+    published_stats: &[("episode_cost", None)],
     ..ScenarioSpec::of(
         "VolcanicVenture",
         "Volcanic Venture",
