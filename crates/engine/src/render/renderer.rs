@@ -5,6 +5,9 @@
 use crate::render::buffers::frame::{Frame, class};
 use crate::render::buffers::labels::{self, InView, Label, Labels};
 use crate::render::buffers::request::Buffers;
+use crate::render::buffers::written::{
+    ClassBuffer, DepthBuffer, NoClass, NoDepth, WithClass, WithDepth,
+};
 use crate::render::colour::palette::Colours;
 use crate::render::colour::tint::Tint;
 use crate::render::output::convert;
@@ -147,14 +150,14 @@ impl Renderer {
             "the world is of another map than the scene"
         );
         match (buffers.depth, buffers.labels) {
-            (false, false) => self.draw::<false, false>(space, world, player),
-            (true, false) => self.draw::<true, false>(space, world, player),
-            (false, true) => self.draw::<false, true>(space, world, player),
-            (true, true) => self.draw::<true, true>(space, world, player),
+            (false, false) => self.draw::<NoDepth, NoClass>(space, world, player),
+            (true, false) => self.draw::<WithDepth, NoClass>(space, world, player),
+            (false, true) => self.draw::<NoDepth, WithClass>(space, world, player),
+            (true, true) => self.draw::<WithDepth, WithClass>(space, world, player),
         }
     }
 
-    fn draw<const DEPTH: bool, const CLASS: bool>(
+    fn draw<D: DepthBuffer, C: ClassBuffer>(
         &mut self,
         space: &mut FrameScratch,
         world: &World,
@@ -163,7 +166,7 @@ impl Renderer {
         space.begin(&self.scene, &self.view, world.tic);
         let camera = Camera::of_player(world, player, &self.view);
         self.slopes.update(&self.view, camera.horizon);
-        space.columns.clear::<DEPTH>(self.frame.depths);
+        space.columns.clear::<D>(self.frame.depths);
         let mut walk = WallPass {
             scene: &self.scene,
             view: &self.view,
@@ -181,15 +184,15 @@ impl Renderer {
             walls: &mut space.walls,
             simd: self.simd,
         };
-        walk.run::<DEPTH>();
-        self.draw_sky::<DEPTH>(space, &camera);
-        self.frame.take_walls::<DEPTH, CLASS>(self.simd, &space.columns, self.view.view_rows);
-        self.draw_planes::<DEPTH, CLASS>(space, &camera);
-        self.draw_masked::<DEPTH, CLASS>(space, &camera, world, player);
-        self.draw_overlay::<DEPTH, CLASS>(space, &camera, world, player);
+        walk.run::<D>();
+        self.draw_sky::<D>(space, &camera);
+        self.frame.take_walls::<D, C>(self.simd, &space.columns, self.view.view_rows);
+        self.draw_planes::<D, C>(space, &camera);
+        self.draw_masked::<D, C>(space, &camera, world, player);
+        self.draw_overlay::<D, C>(space, &camera, world, player);
     }
 
-    fn draw_masked<const DEPTH: bool, const CLASS: bool>(
+    fn draw_masked<D: DepthBuffer, C: ClassBuffer>(
         &mut self,
         space: &mut FrameScratch,
         camera: &Camera,
@@ -221,11 +224,11 @@ impl Renderer {
             midtexture_depth: &mut space.midtexture_depth,
             simd: self.simd,
         };
-        masked.draw::<DEPTH, CLASS>(&space.sprites);
+        masked.draw::<D, C>(&space.sprites);
     }
 
     /// What is drawn over the world: weapon, status bar, flashes.
-    fn draw_overlay<const DEPTH: bool, const CLASS: bool>(
+    fn draw_overlay<D: DepthBuffer, C: ClassBuffer>(
         &mut self,
         space: &mut FrameScratch,
         camera: &Camera,
@@ -239,7 +242,7 @@ impl Renderer {
         let (columns, cache) = (&mut space.patch_columns, &mut space.weapons);
         let mut canvas =
             weapon::Canvas { frame: &mut self.frame, columns, cache, simd: self.simd, scene, view };
-        canvas.weapon::<DEPTH, CLASS>(camera, player, i32::from(level));
+        canvas.weapon::<D, C>(camera, player, i32::from(level));
         self.status_bar.update(&mut self.frame, &scene.bar, view, state);
         let tint = Tint::of_player(player, self.options.green_goggles);
         if tint != self.tint {
@@ -252,7 +255,7 @@ impl Renderer {
 
     /// Draws the sky, as far as its colours go, into the workspace's columns: its depth is what
     /// they were emptied to.
-    fn draw_sky<const DEPTH: bool>(&mut self, space: &mut FrameScratch, camera: &Camera) {
+    fn draw_sky<D: DepthBuffer>(&mut self, space: &mut FrameScratch, camera: &Camera) {
         let picture = &self.scene.textures.walls[self.scene.sky];
         // Whatever light there is, and by goggles too.
         let shader = SkyShader {
@@ -266,7 +269,7 @@ impl Renderer {
                 .slopes
                 .sky_rows(|horizon| sky::shader::texel_rows(&self.view, horizon, picture.height));
             sky::draw(&shader, self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
-            if DEPTH && self.frame.depths.by_quads() {
+            if D::WRITTEN && self.frame.depths.by_quads() {
                 let (first, shown, farthest) =
                     (plane.first, plane.first..plane.end, self.frame.depths.farthest());
                 quads::draw_below(
@@ -280,14 +283,14 @@ impl Renderer {
         }
     }
 
-    fn draw_planes<const DEPTH: bool, const CLASS: bool>(
+    fn draw_planes<D: DepthBuffer, C: ClassBuffer>(
         &mut self,
         space: &mut FrameScratch,
         camera: &Camera,
     ) {
         let tables = &self.scene.assets.light_tables;
         for plane in space.planes.used() {
-            if plane.is_empty() || (plane.key.sky && !CLASS) {
+            if plane.is_empty() || (plane.key.sky && !C::WRITTEN) {
                 continue;
             }
             if plane.key.sky {
@@ -300,17 +303,11 @@ impl Renderer {
                 (&self.scene.textures.flats[picture], self.scene.textures.squares[picture]);
             let shader =
                 PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key, square);
-            if whole::draw::<DEPTH, CLASS>(&shader, self.simd, &mut self.frame, flat, plane) {
+            if whole::draw::<D, C>(&shader, self.simd, &mut self.frame, flat, plane) {
                 continue;
             }
             let count = spans::list(plane, self.simd, &mut space.span_starts, &mut space.spans);
-            draw::draw::<DEPTH, CLASS>(
-                &shader,
-                self.simd,
-                &mut self.frame,
-                flat,
-                &space.spans[..count],
-            );
+            draw::draw::<D, C>(&shader, self.simd, &mut self.frame, flat, &space.spans[..count]);
         }
     }
 

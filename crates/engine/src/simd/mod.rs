@@ -35,6 +35,9 @@ pub enum Family {
 pub(crate) enum Level {
     /// Plain code.
     Plain,
+    /// Vectors of 16 bytes, which every 64-bit ARM has. Arithmetic with floating-point numbers is
+    /// plain beside it.
+    Neon,
     /// Vectors of 32 bytes.
     Avx2,
     /// Vectors of 64 bytes with masks, and look-ups of 64 bytes at once (Ice Lake and Zen 4
@@ -53,6 +56,9 @@ impl Simd {
     #[must_use]
     pub fn available() -> Vec<Simd> {
         let mut all = vec![Simd::PLAIN];
+        if cfg!(target_arch = "aarch64") {
+            all.push(Simd { family: Family::Plain, level: Level::Neon });
+        }
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
@@ -119,7 +125,7 @@ impl Simd {
         Simd::available().pop().unwrap_or(Simd::PLAIN)
     }
 
-    /// The family of a name: `plain` (or `portable`), `avx2`, `avx512` or `avx512bf16`.
+    /// The family of a name: `plain` (or `portable`), `neon`, `avx2`, `avx512` or `avx512bf16`.
     fn named(name: &str) -> Result<Simd, SimdError> {
         let known = if name == "portable" { "plain" } else { name };
         let there = Simd::all_named().into_iter().find(|simd| simd.name() == known);
@@ -130,6 +136,7 @@ impl Simd {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self.family {
+            Family::Plain if matches!(self.level, Level::Neon) => "neon",
             Family::Plain => "plain",
             Family::Avx2 => "avx2",
             Family::Avx512 => "avx512",
@@ -188,8 +195,8 @@ macro_rules! dispatch {
             _ => {}
         }
         $(#[cfg(target_arch = "aarch64")]
-        if true $(&& $fits_neon)? {
-            // SAFETY: every AArch64 has the instructions.
+        if $simd.level() == $crate::simd::Level::Neon $(&& $fits_neon)? {
+            // SAFETY: a `Simd` value proves that the processor has the instructions.
             break 'dispatched unsafe { $neon };
         })?
         #[cfg(not(target_arch = "x86_64"))]

@@ -4,6 +4,7 @@ use crate::render::blocks::ROW_BLOCK;
 use crate::render::blocks::column_stride;
 use crate::render::buffers::transpose;
 use crate::render::buffers::visplane::Span;
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::view::depth::DepthEncoding;
 use crate::render::view::tables::View;
 use crate::simd::Simd;
@@ -75,9 +76,9 @@ impl Columns {
     }
 
     /// Empties them.
-    pub fn clear<const DEPTH: bool>(&mut self, depths: DepthEncoding) {
+    pub fn clear<D: DepthBuffer>(&mut self, depths: DepthEncoding) {
         self.colour.fill(0);
-        if DEPTH {
+        if D::WRITTEN {
             self.depth.fill(depths.farthest());
         }
     }
@@ -123,18 +124,18 @@ impl Frame {
 
     /// Takes over the walls, which were drawn by columns, into the first `rows` rows; whatever
     /// comes next is drawn by rows.
-    pub fn take_walls<const DEPTH: bool, const CLASS: bool>(
+    pub fn take_walls<D: DepthBuffer, C: ClassBuffer>(
         &mut self,
         simd: Simd,
         columns: &Columns,
         rows: usize,
     ) {
         let Columns { stride, colour, depth } = columns;
-        if CLASS {
+        if C::WRITTEN {
             self.class[..rows * self.width].fill(class::WALL);
         }
         transpose::to_rows(simd, colour, *stride, &mut self.colour, self.width, rows);
-        if DEPTH {
+        if D::WRITTEN {
             transpose::to_rows(simd, depth, *stride, &mut self.depth, self.width, rows);
         }
     }

@@ -8,3 +8,4 @@ pub mod request;
 pub mod sectors;
 pub mod transpose;
 pub mod visplane;
+pub mod written;

@@ -1,6 +1,7 @@
 //! The player's own weapon in the lower part of the view, with its muzzle flash.
 
 use crate::render::buffers::frame::{Frame, class};
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::colour::tint::power_shows;
 use crate::render::overlay::weapon_cache::{LayerKey, WeaponCache};
 use crate::render::patch;
@@ -29,7 +30,7 @@ pub(crate) struct Canvas<'a> {
 
 impl Canvas<'_> {
     /// Draws both layers of a player's weapon; `level` is the light of its sector.
-    pub fn weapon<const DEPTH: bool, const CLASS: bool>(
+    pub fn weapon<D: DepthBuffer, C: ClassBuffer>(
         &mut self,
         camera: &Camera,
         player: &Player,
@@ -41,11 +42,11 @@ impl Canvas<'_> {
                 (true, None) => 0,
                 _ => Light::new(camera, level).nearest_table(),
             };
-            self.layer::<DEPTH, CLASS>(sprite, table, opacity);
+            self.layer::<D, C>(sprite, table, opacity);
         }
     }
 
-    fn layer<const DEPTH: bool, const CLASS: bool>(
+    fn layer<D: DepthBuffer, C: ClassBuffer>(
         &mut self,
         sprite: &PlayerSprite,
         table: usize,
@@ -61,7 +62,7 @@ impl Canvas<'_> {
         let is_opaque = opacity == OPAQUE;
         let (size, place) = (view.size(), [sprite.x, sprite.y]);
         let key = LayerKey { scene: scene.serial, size, image, light_table: table, place };
-        if is_opaque && self.cache.copy::<DEPTH, CLASS>(&key, self.frame) {
+        if is_opaque && self.cache.copy::<D, C>(&key, self.frame) {
             return;
         }
         let left =
@@ -105,6 +106,6 @@ impl Canvas<'_> {
         if is_opaque {
             self.cache.note(key, &stamp, self.simd, view);
         }
-        patch::draw::<DEPTH, CLASS>(&stamp, self.simd, self.frame, &view.rows);
+        patch::draw::<D, C>(&stamp, self.simd, self.frame, &view.rows);
     }
 }

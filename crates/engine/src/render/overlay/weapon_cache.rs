@@ -4,6 +4,7 @@
 
 use crate::math::Fixed;
 use crate::render::buffers::frame::{Frame, class};
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer, NoDepth, WithClass};
 use crate::render::patch;
 use crate::render::patch::data::Patch;
 use crate::render::view::size::FrameSize;
@@ -53,15 +54,11 @@ struct DrawnLayer {
 
 impl WeaponCache {
     /// Draws a layer, if its pixels are known; returns whether they are.
-    pub fn copy<const DEPTH: bool, const CLASS: bool>(
-        &self,
-        key: &LayerKey,
-        frame: &mut Frame,
-    ) -> bool {
+    pub fn copy<D: DepthBuffer, C: ClassBuffer>(&self, key: &LayerKey, frame: &mut Frame) -> bool {
         let known =
             self.slots.get(key.slot()).and_then(Option::as_ref).filter(|slot| slot.key == *key);
         let Some(layer) = known.and_then(|slot| slot.layer.as_ref()) else { return false };
-        layer.copy::<DEPTH, CLASS>(frame);
+        layer.copy::<D, C>(frame);
         true
     }
 
@@ -100,7 +97,7 @@ impl DrawnLayer {
     fn new(stamp: &Patch, simd: Simd, view: &View) -> DrawnLayer {
         let mut frame = Frame::default();
         frame.fit(view, frame.depths);
-        patch::draw::<false, true>(stamp, simd, &mut frame, &view.rows);
+        patch::draw::<NoDepth, WithClass>(stamp, simd, &mut frame, &view.rows);
         let (mut runs, mut colours) = (Vec::new(), Vec::new());
         for (row, classes) in frame.class.chunks_exact(frame.width).enumerate() {
             let mut x = 0;
@@ -118,17 +115,17 @@ impl DrawnLayer {
         DrawnLayer { runs, colours }
     }
 
-    fn copy<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame) {
+    fn copy<D: DepthBuffer, C: ClassBuffer>(&self, frame: &mut Frame) {
         let mut colours = &self.colours[..];
         for &[at, length] in &self.runs {
             let pixels = at as usize..(at + length) as usize;
             let (own, rest) = colours.split_at(length as usize);
             colours = rest;
             copy_run(&mut frame.colour[pixels.clone()], own);
-            if DEPTH {
+            if D::WRITTEN {
                 frame.depth[pixels.clone()].fill(0);
             }
-            if CLASS {
+            if C::WRITTEN {
                 frame.class[pixels].fill(class::WEAPON);
             }
         }

@@ -2,6 +2,7 @@
 //! from which the columns pick.
 
 use crate::render::buffers::frame::Frame;
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::colour::blend::Mixture;
 use crate::render::patch::data::{DrawnBounds, PATCH_BLOCK, Patch};
 use crate::render::textures::sprite::TEXEL_BLOCK;
@@ -14,7 +15,7 @@ pub(crate) const MOST_TEXELS: usize = 256;
 
 /// Draws some rows of a stamp; `base_rows` are the base rows of the frame's.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
+pub(crate) fn draw<D: DepthBuffer, C: ClassBuffer>(
     stamp: &Patch,
     frame: &mut Frame,
     base_rows: &[u32],
@@ -55,14 +56,14 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
                 }
                 Some(mixture) => shine_through(mixture, pixels, mask, lit),
             }
-            if DEPTH {
+            if D::WRITTEN {
                 let depth = _mm512_set1_epi8(stamp.depth as i8);
                 // SAFETY: as above.
                 unsafe {
                     _mm512_mask_storeu_epi8(frame.depth[at..end].as_mut_ptr().cast(), mask, depth)
                 }
             }
-            if CLASS && mask != 0 {
+            if C::WRITTEN && mask != 0 {
                 let class = _mm512_set1_epi16(stamp.class as i16);
                 let pixels: *mut i16 = frame.class[at..end].as_mut_ptr().cast();
                 // SAFETY: as above; the second half lies in the buffer where it has a pixel at all.

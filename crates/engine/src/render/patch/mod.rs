@@ -5,11 +5,12 @@ pub mod data;
 mod scalar;
 
 use crate::render::buffers::frame::Frame;
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::simd::{Simd, dispatch};
 use data::{DrawnBounds, Patch};
 
 /// Draws it; `base_rows` are the base rows of the frame's.
-pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
+pub(crate) fn draw<D: DepthBuffer, C: ClassBuffer>(
     stamp: &Patch,
     simd: Simd,
     frame: &mut Frame,
@@ -21,8 +22,8 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
         stamp.columns.bottoms[..count].iter().max().map_or(0, |&bottom| bottom.max(0) as usize);
     let rows = stamp.rows.start.max(top)..stamp.rows.end.min(bottom);
     dispatch!(simd;
-        avx512 if stamp.picture.stride <= avx512::MOST_TEXELS => avx512::draw::<DEPTH, CLASS>(stamp, frame, base_rows, rows),
-        scalar => scalar::draw::<DEPTH, CLASS>(stamp, frame, base_rows, rows),
+        avx512 if stamp.picture.stride <= avx512::MOST_TEXELS => avx512::draw::<D, C>(stamp, frame, base_rows, rows),
+        scalar => scalar::draw::<D, C>(stamp, frame, base_rows, rows),
     )
 }
 
@@ -32,6 +33,7 @@ mod tests {
     use super::*;
     use crate::assets::{Assets, Image};
     use crate::math::Rng;
+    use crate::render::buffers::written::{NoClass, NoDepth, WithClass, WithDepth};
     use crate::render::colour::blend::Blend;
     use crate::render::textures::sprite::SpriteTexture;
     use crate::world::OPAQUE;
@@ -90,7 +92,7 @@ mod tests {
                 class: 33,
             };
             let mut plain = before.clone();
-            let covered = draw::<true, true>(&stamp, Simd::PLAIN, &mut plain, &base_rows);
+            let covered = draw::<WithDepth, WithClass>(&stamp, Simd::PLAIN, &mut plain, &base_rows);
             for row in 0..frame_rows {
                 for x in 0..frame_width {
                     let i = x.wrapping_sub(first);
@@ -118,7 +120,7 @@ mod tests {
             for simd in Simd::available() {
                 let mut wide = before.clone();
                 assert_eq!(
-                    draw::<true, true>(&stamp, simd, &mut wide, &base_rows),
+                    draw::<WithDepth, WithClass>(&stamp, simd, &mut wide, &base_rows),
                     covered,
                     "{simd:?}"
                 );
@@ -129,7 +131,7 @@ mod tests {
                     "{simd:?}"
                 );
                 let mut bare = before.clone();
-                draw::<false, false>(&stamp, simd, &mut bare, &base_rows);
+                draw::<NoDepth, NoClass>(&stamp, simd, &mut bare, &base_rows);
                 assert!(
                     bare.colour == plain.colour
                         && bare.depth == before.depth

@@ -1,6 +1,7 @@
 //! A patch column by column.
 
 use crate::render::buffers::frame::Frame;
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::patch::data::{DrawnBounds, Patch};
 use crate::render::textures::masked::MaskedTexture;
 use std::ops::Range;
@@ -10,7 +11,7 @@ use std::ops::Range;
 const SEARCHED_ROWS: usize = 32;
 
 /// Draws some rows of a patch; `base_rows` are the base rows of the frame's.
-pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
+pub(crate) fn draw<D: DepthBuffer, C: ClassBuffer>(
     stamp: &Patch,
     frame: &mut Frame,
     base_rows: &[u32],
@@ -22,14 +23,14 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
             (stamp.columns.tops[i].max(0) as usize, stamp.columns.bottoms[i].max(0) as usize);
         let open = rows.start.max(top)..rows.end.min(bottom);
         if !open.is_empty() {
-            column::<DEPTH, CLASS>(stamp, frame, base_rows, i, open, &mut covered);
+            column::<D, C>(stamp, frame, base_rows, i, open, &mut covered);
         }
     }
     covered
 }
 
 /// Draws the rows `open` of column `i`.
-fn column<const DEPTH: bool, const CLASS: bool>(
+fn column<D: DepthBuffer, C: ClassBuffer>(
     stamp: &Patch,
     frame: &mut Frame,
     base_rows: &[u32],
@@ -62,18 +63,18 @@ fn column<const DEPTH: bool, const CLASS: bool>(
             line[x] = if texel & MaskedTexture::OPAQUE != 0 { lit } else { line[x] };
         }),
     }
-    if !(DEPTH || CLASS) {
+    if !(D::WRITTEN || C::WRITTEN) {
         return;
     }
     let (mut first, mut end) = (usize::MAX, 0);
     for row in open {
         let (opaque, at) =
             (texels[stamp.texel_row(base_rows[row])] & MaskedTexture::OPAQUE != 0, row * width + x);
-        if DEPTH {
+        if D::WRITTEN {
             let pixel = &mut frame.depth[at];
             *pixel = if opaque { stamp.depth } else { *pixel };
         }
-        if CLASS {
+        if C::WRITTEN {
             let pixel = &mut frame.class[at];
             *pixel = if opaque { stamp.class } else { *pixel };
             first = if opaque { first.min(row) } else { first };

@@ -2,6 +2,7 @@
 
 use crate::render::buffers::frame::{Frame, class};
 use crate::render::buffers::visplane::VisPlaneKey;
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::planes::row::data::RowWalk;
 use crate::render::view::camera::Camera;
 use crate::render::view::horizon::PlaneRows;
@@ -65,17 +66,17 @@ impl<'a> PlaneShader<'a> {
     }
 
     #[inline(always)]
-    pub fn write<const DEPTH: bool, const CLASS: bool>(
+    pub fn write<D: DepthBuffer, C: ClassBuffer>(
         &self,
         frame: &mut Frame,
         distance: i64,
         pixels: Range<usize>,
     ) {
-        if DEPTH {
+        if D::WRITTEN {
             let depth = frame.depths.plane(distance);
             frame.depth[pixels.clone()].fill(depth);
         }
-        if CLASS {
+        if C::WRITTEN {
             frame.class[pixels].fill(self.class);
         }
     }

@@ -1,5 +1,6 @@
 //! The squares of trails, drawn between the sprites: the farthest first.
 
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::sprites::particles::{Particle, inverse};
 use crate::render::sprites::pass::SpritePass;
 
@@ -14,21 +15,21 @@ impl SpritePass<'_> {
 
     /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet.
     /// Depth and labels say nothing of them.
-    pub fn squares_beyond<const DEPTH: bool, const CLASS: bool>(&mut self, distance: i64) {
+    pub fn squares_beyond<D: DepthBuffer, C: ClassBuffer>(&mut self, distance: i64) {
         while let Some(spot) = self.trails.spots.pop_if(|spot| spot.distance > distance) {
-            self.square::<DEPTH, CLASS>(&spot);
+            self.square::<D, C>(&spot);
         }
     }
 
     /// Mixes the colour of a spot into what is seen of each of its columns.
-    fn square<const DEPTH: bool, const CLASS: bool>(&mut self, spot: &Particle) {
+    fn square<D: DepthBuffer, C: ClassBuffer>(&mut self, spot: &Particle) {
         let (width, hidden) =
             (self.frame.width, self.trails.trails[usize::from(spot.trail)].hidden);
         let first = usize::from(spot.columns[0]);
         if hidden {
             let extent = spot.extent();
             self.columns.open(0..self.view.view_rows as i16, (first..extent.end).map(|_| 0));
-            self.occlude::<DEPTH, CLASS>(&extent);
+            self.occlude::<D, C>(&extent);
         }
         for column in first..usize::from(spot.columns[1]) {
             let [mut top, mut bottom] = spot.rows;

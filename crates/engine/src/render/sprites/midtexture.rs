@@ -4,6 +4,7 @@ use crate::map::SectorId;
 use crate::math::Fixed;
 use crate::render::buffers::drawsegs::list::DrawSeg;
 use crate::render::buffers::frame::{Frame, class};
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::sprites::midcolumn::{self, data::MidColumn};
 use crate::render::sprites::pass::SpritePass;
 use crate::render::sprites::posts::{PostProjection, PostScale};
@@ -43,18 +44,18 @@ struct Place {
 impl SpritePass<'_> {
     /// Draws the frame columns `first..end` of the masked texture of an opening, and marks them as
     /// drawn.
-    pub fn texture<const DEPTH: bool, const CLASS: bool>(
+    pub fn texture<D: DepthBuffer, C: ClassBuffer>(
         &mut self,
         drawseg: &DrawSeg,
         first: usize,
         end: usize,
     ) {
         let Some(seen) = self.seen_texture(drawseg, first, end) else { return };
-        let by_quads = DEPTH && self.frame.depths.by_quads();
+        let by_quads = D::WRITTEN && self.frame.depths.by_quads();
         for x in first..end {
             let row_index = drawseg.rows + x - drawseg.first;
             let drawn = std::mem::replace(&mut self.drawsegs.drawn[row_index], true);
-            let in_four = if DEPTH { self.in_four(&seen, x) } else { None };
+            let in_four = if D::WRITTEN { self.in_four(&seen, x) } else { None };
             if by_quads && in_four == Some(0) {
                 self.midtexture_depth.begin();
             }
@@ -65,7 +66,7 @@ impl SpritePass<'_> {
             let rows = top.max(open[0])..bottom.min(open[1]);
             if !drawn && !rows.is_empty() {
                 let rows = rows.start as usize..rows.end as usize;
-                self.texture_column::<DEPTH, CLASS>(&seen, Place { x, rows, in_four });
+                self.texture_column::<D, C>(&seen, Place { x, rows, in_four });
             }
             if by_quads && in_four == Some(3) {
                 let Frame { width, depth, .. } = &mut *self.frame;
@@ -126,11 +127,7 @@ impl SpritePass<'_> {
     }
 
     #[inline]
-    fn texture_column<const DEPTH: bool, const CLASS: bool>(
-        &mut self,
-        seen: &SeenTexture,
-        place: Place,
-    ) {
+    fn texture_column<D: DepthBuffer, C: ClassBuffer>(&mut self, seen: &SeenTexture, place: Place) {
         let Place { x, rows, in_four } = place;
         let (drawseg, fence, base_column) =
             (seen.drawseg, seen.fence, i64::from(self.view.columns[x]));
@@ -161,16 +158,16 @@ impl SpritePass<'_> {
             Some(_) => depths.wall(distance, fence.picture.height),
             None => depths.sprite(distance, self.view.focal_y),
         };
-        if DEPTH && in_four.is_none() {
+        if D::WRITTEN && in_four.is_none() {
             self.midtexture_depth.note(written);
         }
         midcolumn::draw(&shown, self.simd, &self.view.rows, rows, |row, lit| {
             let pixel = row * *width + x;
             colour[pixel] = lit;
-            if DEPTH {
+            if D::WRITTEN {
                 depth[pixel] = written;
             }
-            if DEPTH
+            if D::WRITTEN
                 && depths.by_quads()
                 && let Some(column) = in_four
             {
@@ -181,7 +178,7 @@ impl SpritePass<'_> {
                     written,
                 );
             }
-            if CLASS {
+            if C::WRITTEN {
                 classes[pixel] = class::WALL;
             }
         });

@@ -3,6 +3,7 @@
 use crate::render::buffers::drawsegs::list::{DrawSeg, DrawSegs};
 use crate::render::buffers::frame::Frame;
 use crate::render::buffers::labels::{Label, Labels};
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::patch;
 use crate::render::patch::data::{DrawnBounds, PatchColumns};
 use crate::render::published_depth::midtexture::MidtextureDepth;
@@ -34,17 +35,17 @@ pub(crate) struct SpritePass<'a> {
 
 impl SpritePass<'_> {
     /// Draws sprites with the squares of trails and the masked textures between them.
-    pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &Sprites) {
+    pub fn draw<D: DepthBuffer, C: ClassBuffer>(&mut self, sprites: &Sprites) {
         self.midtexture_depth.reset();
         self.find_hidden_trails();
         for sprite in sprites.far_to_near() {
-            self.squares_beyond::<DEPTH, CLASS>(sprite.distance);
-            self.sprite::<DEPTH, CLASS>(sprite);
+            self.squares_beyond::<D, C>(sprite.distance);
+            self.sprite::<D, C>(sprite);
         }
-        self.squares_beyond::<DEPTH, CLASS>(i64::MIN);
+        self.squares_beyond::<D, C>(i64::MIN);
         for at in (0..self.drawsegs.masked().len()).rev() {
             let drawseg = self.drawsegs.list[self.drawsegs.masked()[at] as usize];
-            self.texture::<DEPTH, CLASS>(&drawseg, drawseg.first, drawseg.end);
+            self.texture::<D, C>(&drawseg, drawseg.first, drawseg.end);
         }
     }
 
@@ -61,7 +62,7 @@ impl SpritePass<'_> {
 
     /// Clips the columns at hand to what is seen of something past the drawsegs before it, and
     /// draws the masked textures that are behind it.
-    pub fn occlude<const DEPTH: bool, const CLASS: bool>(&mut self, extent: &Extent) {
+    pub fn occlude<D: DepthBuffer, C: ClassBuffer>(&mut self, extent: &Extent) {
         for at in (0..self.drawsegs.meet(self.simd, extent.first, extent.end, extent.inverse)).rev()
         {
             let drawseg = &self.drawsegs.list[self.drawsegs.met(at)];
@@ -69,7 +70,7 @@ impl SpritePass<'_> {
             if !self.is_behind(extent, drawseg) {
                 if drawseg.masked {
                     let drawseg = *drawseg;
-                    self.texture::<DEPTH, CLASS>(&drawseg, first, end);
+                    self.texture::<D, C>(&drawseg, first, end);
                 }
                 continue;
             }
@@ -97,18 +98,18 @@ impl SpritePass<'_> {
         }
     }
 
-    fn sprite<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &VisSprite) {
+    fn sprite<D: DepthBuffer, C: ClassBuffer>(&mut self, sprite: &VisSprite) {
         let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else {
             return;
         };
         sprite.open(self.columns, self.view);
-        self.occlude::<DEPTH, CLASS>(&sprite.extent);
+        self.occlude::<D, C>(&sprite.extent);
         let label = self.labels.next_class();
         let depth = self.frame.depths.sprite(sprite.distance, self.view.focal_y);
         self.midtexture_depth.note(depth);
         let stamp = sprite.stamp(self.scene, picture, self.columns, depth, label);
-        let covered = patch::draw::<DEPTH, CLASS>(&stamp, self.simd, self.frame, &self.view.rows);
-        if CLASS && covered != DrawnBounds::NOTHING {
+        let covered = patch::draw::<D, C>(&stamp, self.simd, self.frame, &self.view.rows);
+        if C::WRITTEN && covered != DrawnBounds::NOTHING {
             let [[left, right], [top, bottom]] = [covered.columns, covered.rows];
             self.labels.list.push(Label {
                 kind: sprite.kind,

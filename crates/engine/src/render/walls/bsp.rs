@@ -2,6 +2,7 @@
 
 use crate::map::Node;
 use crate::math::Fixed;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::scene::prepared::{NO_SECTOR, Scene};
 use crate::render::view::camera::Camera;
 use crate::render::walls::pass::WallPass;
@@ -52,9 +53,9 @@ fn ask_for(scene: &Scene, child: u32) {
 
 impl WallPass<'_> {
     /// Draws all walls, and lists what else there is to draw.
-    pub fn run<const DEPTH: bool>(&mut self) {
-        self.visit::<DEPTH>();
-        self.draw_walls::<DEPTH>();
+    pub fn run<D: DepthBuffer>(&mut self) {
+        self.visit::<D>();
+        self.draw_walls::<D>();
     }
 
     /// Walks until everything is covered.
@@ -62,7 +63,7 @@ impl WallPass<'_> {
     /// Which child is near and which one is in view is unpredictable, so that all of it is
     /// arithmetic without branches: children that are out of view are written to the stack too, but
     /// not counted.
-    fn visit<const DEPTH: bool>(&mut self) {
+    fn visit<D: DepthBuffer>(&mut self) {
         let scene = self.scene;
         let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
         let mut open = self.clip.range();
@@ -75,7 +76,7 @@ impl WallPass<'_> {
         loop {
             if child & Node::SUBSECTOR != 0 {
                 let closed = self.clip.closed();
-                self.subsector::<DEPTH>((child & !Node::SUBSECTOR) as usize);
+                self.subsector::<D>((child & !Node::SUBSECTOR) as usize);
                 if self.clip.closed() != closed {
                     let now_open = self.clip.range();
                     if now_open.0 >= now_open.1 {
@@ -155,7 +156,7 @@ impl WallPass<'_> {
         first < end && self.clip.any_open(usize::from(first), usize::from(end))
     }
 
-    fn subsector<const DEPTH: bool>(&mut self, index: usize) {
+    fn subsector<D: DepthBuffer>(&mut self, index: usize) {
         let WallPass { scene, world, ref mut surfaces, .. } = *self;
         let [first, end, sector] = scene.subsectors[index];
         self.entered[sector as usize] = true;
@@ -183,7 +184,7 @@ impl WallPass<'_> {
             kept += usize::from(differs != 0);
         }
         for i in 0..kept {
-            self.seg::<DEPTH>(self.scratch.facing[i]);
+            self.seg::<D>(self.scratch.facing[i]);
         }
     }
 }

@@ -3,6 +3,7 @@
 //! Fitted to moments of ViZDoom.
 
 use crate::assets::Stain;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::colour::blend::WHOLE;
 use crate::render::patch::data::first_row;
 use crate::render::scene::prepared::Sidedef;
@@ -22,21 +23,21 @@ const LIGHT_TABLES: usize = 32;
 impl WallPass<'_> {
     /// Darkens the part of a wall between the upper and the lower scratch where its side bears
     /// soot.
-    pub fn soot<const DEPTH: bool>(&mut self, seen: &SeenSeg<'_>, light: Light) {
+    pub fn soot<D: DepthBuffer>(&mut self, seen: &SeenSeg<'_>, light: Light) {
         let Some(stain) = &self.scene.assets.soot else { return };
         let world = self.world;
         let mut marks = world.soot.iter().filter(|mark| mark.side.0 == seen.seg.face).peekable();
         if marks.peek().is_none() {
             return;
         }
-        self.draw_walls::<DEPTH>();
+        self.draw_walls::<D>();
         self.list_decal_columns(seen, light);
         let columns = std::mem::take(&mut self.scratch.decal_columns);
-        if DEPTH && self.depths.by_quads() {
+        if D::WRITTEN && self.depths.by_quads() {
             self.begin_depth(seen, &columns);
         }
         for mark in marks {
-            self.stain::<DEPTH>(&columns, seen.face, stain, mark);
+            self.stain::<D>(&columns, seen.face, stain, mark);
         }
         self.scratch.decal_columns = columns;
     }
@@ -78,7 +79,7 @@ impl WallPass<'_> {
         }));
     }
 
-    fn stain<const DEPTH: bool>(
+    fn stain<D: DepthBuffer>(
         &mut self,
         columns: &[DecalColumn],
         face: &Sidedef,
@@ -95,7 +96,7 @@ impl WallPass<'_> {
         let count = columns[first..]
             .partition_point(|column| texel_column(column) < i64::from(stain.width));
         let columns = &columns[first..first + count];
-        let by_quads = DEPTH && self.depths.by_quads();
+        let by_quads = D::WRITTEN && self.depths.by_quads();
         let covered = columns.first().map_or(0, |column| column.x)
             ..columns.last().map_or(0, |column| column.x + 1);
         for column in columns {
@@ -136,7 +137,7 @@ impl WallPass<'_> {
             for (pixel, &row) in self.columns.colour_of(column.x)[first..end].iter_mut().zip(rows) {
                 *pixel = self.scene.blend.darkened(*pixel, hidden(row));
             }
-            if DEPTH && !by_quads {
+            if D::WRITTEN && !by_quads {
                 let pixels = self.columns.depth_of(column.x)[first..end].iter_mut();
                 pixels
                     .zip(rows)

@@ -7,12 +7,16 @@ use crate::math::Fixed;
 use crate::render::buffers::drawsegs::list::DrawSeg;
 use crate::render::buffers::sectors::SectorSurfaces;
 use crate::render::buffers::visplane::VisPlaneKey;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::published_depth::quads;
 use crate::render::scene::prepared::{NO_SECTOR, SceneSeg};
 use crate::render::view::light::Light;
 use crate::render::view::line::{END_BITS, Edge};
 use crate::render::view::view_space::ViewLine;
 use crate::render::walls::batch;
+use crate::render::walls::clip::parts::{
+    Ceiling, Floor, Parts, PlaneAndWall, PlaneOnly, Side, WallOnly,
+};
 use crate::render::walls::clip::{clip_columns, pass::ClipLists};
 use crate::render::walls::pass::{SeenSeg, WallPass, WallScratch};
 use crate::render::walls::shade;
@@ -46,7 +50,7 @@ struct WallTier {
 impl WallPass<'_> {
     /// Draws a seg that sidedefs the eye, if any column shows it.
     #[inline]
-    pub fn seg<const DEPTH: bool>(&mut self, index: u32) {
+    pub fn seg<D: DepthBuffer>(&mut self, index: u32) {
         let seg = &self.scene.segs[index as usize];
         let Some(SeenColumns { first, end, positions, base_ends, turned }) = self.columns(seg)
         else {
@@ -62,10 +66,10 @@ impl WallPass<'_> {
             SeenSeg { index, seg, face, turned, line, ends, inverses, first, end, base_ends };
         let front = &self.surfaces.of(self.world, seg.front);
         if seg.back == NO_SECTOR {
-            self.solid::<DEPTH>(&seen, front);
+            self.solid::<D>(&seen, front);
         } else {
             let back = &self.surfaces.of(self.world, seg.back);
-            self.opening::<DEPTH>(&seen, front, back);
+            self.opening::<D>(&seen, front, back);
         }
     }
 
@@ -109,7 +113,7 @@ impl WallPass<'_> {
     }
 
     /// A wall without another side.
-    fn solid<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorSurfaces) {
+    fn solid<D: DepthBuffer>(&mut self, seen: &SeenSeg, front: &SectorSurfaces) {
         let (ceiling, floor) = (self.edge(seen, front.ceiling), self.edge(seen, front.floor));
         // As if there were an opening without height where the floor is.
         let above = WallTier { plane: self.ceiling_plane(front), edge: ceiling, wall: Some(floor) };
@@ -119,7 +123,7 @@ impl WallPass<'_> {
             _ => front.ceiling,
         };
         if self.above(seen, above) {
-            self.wall::<DEPTH>(seen, front, seen.face.middle, hung_from);
+            self.wall::<D>(seen, front, seen.face.middle, hung_from);
         }
         self.below(seen, below);
         self.clip.close(seen.first, seen.end);
@@ -127,7 +131,7 @@ impl WallPass<'_> {
     }
 
     /// A line with a sector on its other side.
-    fn opening<const DEPTH: bool>(
+    fn opening<D: DepthBuffer>(
         &mut self,
         seen: &SeenSeg,
         front: &SectorSurfaces,
@@ -153,7 +157,7 @@ impl WallPass<'_> {
                     }
                     _ => ceiling,
                 };
-                self.wall::<DEPTH>(seen, front, face.top, hung_from);
+                self.wall::<D>(seen, front, face.top, hung_from);
             }
         }
         if shut
@@ -170,7 +174,7 @@ impl WallPass<'_> {
             if self.below(seen, part) {
                 let hung_from =
                     if face.lower_unpegged { front.ceiling.max(back.ceiling) } else { back.floor };
-                self.wall::<DEPTH>(seen, front, face.bottom, hung_from);
+                self.wall::<D>(seen, front, face.bottom, hung_from);
             }
         }
         let eye = Fixed(self.camera.z as i32);
@@ -197,12 +201,12 @@ impl WallPass<'_> {
     fn above(&mut self, seen: &SeenSeg, part: WallTier) -> bool {
         match (part.plane, part.wall) {
             (Some(plane), None) => {
-                self.clip_columns::<false, true, false>(seen, plane, part.edge, part.edge)
+                self.clip_columns::<Ceiling, PlaneOnly>(seen, plane, part.edge, part.edge)
             }
             (Some(plane), Some(wall)) => {
-                self.clip_columns::<false, true, true>(seen, plane, part.edge, wall)
+                self.clip_columns::<Ceiling, PlaneAndWall>(seen, plane, part.edge, wall)
             }
-            (None, Some(wall)) => self.clip_columns::<false, false, true>(seen, 0, part.edge, wall),
+            (None, Some(wall)) => self.clip_columns::<Ceiling, WallOnly>(seen, 0, part.edge, wall),
             (None, None) => false,
         }
     }
@@ -211,12 +215,12 @@ impl WallPass<'_> {
     fn below(&mut self, seen: &SeenSeg, part: WallTier) -> bool {
         match (part.plane, part.wall) {
             (Some(plane), None) => {
-                self.clip_columns::<true, true, false>(seen, plane, part.edge, part.edge)
+                self.clip_columns::<Floor, PlaneOnly>(seen, plane, part.edge, part.edge)
             }
             (Some(plane), Some(wall)) => {
-                self.clip_columns::<true, true, true>(seen, plane, part.edge, wall)
+                self.clip_columns::<Floor, PlaneAndWall>(seen, plane, part.edge, wall)
             }
-            (None, Some(wall)) => self.clip_columns::<true, false, true>(seen, 0, part.edge, wall),
+            (None, Some(wall)) => self.clip_columns::<Floor, WallOnly>(seen, 0, part.edge, wall),
             (None, None) => false,
         }
     }
@@ -224,7 +228,7 @@ impl WallPass<'_> {
     /// The plane takes the rows up to `edge`, the wall those from there to `wall`, and what is left
     /// stays open.
     #[inline]
-    fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+    fn clip_columns<S: Side, P: Parts>(
         &mut self,
         seen: &SeenSeg,
         plane: u16,
@@ -238,13 +242,7 @@ impl WallPass<'_> {
             planes: self.planes,
             wall: [upper, lower],
         };
-        clip_columns::<FLOOR, PLANE, WALL>(
-            self.simd,
-            &mut lists,
-            seen.first..seen.end,
-            plane,
-            [edge, wall],
-        )
+        clip_columns::<S, P>(self.simd, &mut lists, seen.first..seen.end, plane, [edge, wall])
     }
 
     /// The plane of a sector's ceiling, if the eye sees it.
@@ -284,7 +282,7 @@ impl WallPass<'_> {
     }
 
     /// Draws the wall between the upper and the lower scratch.
-    fn wall<const DEPTH: bool>(
+    fn wall<D: DepthBuffer>(
         &mut self,
         seen: &SeenSeg,
         front: &SectorSurfaces,
@@ -309,7 +307,7 @@ impl WallPass<'_> {
         let (tops, bottoms) = (&self.scratch.upper[first..], &self.scratch.lower[first..]);
         let listed_from = self.scene.textures.listed_from[picture].filter(|_| self.batches_walls());
         if let Some(start) = listed_from {
-            batch::add::<DEPTH>(
+            batch::add::<D>(
                 self.walls,
                 self.simd,
                 &shader,
@@ -320,7 +318,7 @@ impl WallPass<'_> {
                 bottoms,
             );
         } else {
-            shade::draw::<DEPTH>(
+            shade::draw::<D>(
                 &shader,
                 self.simd,
                 self.columns,
@@ -329,7 +327,7 @@ impl WallPass<'_> {
                 &bottoms[..end - first],
             );
         }
-        if DEPTH && self.depths.by_quads() {
+        if D::WRITTEN && self.depths.by_quads() {
             let depth = |x: usize| {
                 shader.depths.wall(
                     seen.line.distance_at(i64::from(self.view.columns[x])),
@@ -345,7 +343,7 @@ impl WallPass<'_> {
             );
         }
         if !self.world.soot.is_empty() {
-            self.soot::<DEPTH>(seen, light);
+            self.soot::<D>(seen, light);
         }
     }
 
@@ -355,12 +353,12 @@ impl WallPass<'_> {
     }
 
     /// Draws the walls that wait for it.
-    pub fn draw_walls<const DEPTH: bool>(&mut self) {
+    pub fn draw_walls<D: DepthBuffer>(&mut self) {
         if self.batches_walls() {
             let (scene, rows) =
                 (self.scene, self.view.rows.first_chunk().expect("the list is padded"));
             let (texels, tables) = (&scene.textures.listed, &scene.assets.light_tables);
-            batch::draw::<DEPTH>(
+            batch::draw::<D>(
                 self.walls,
                 self.simd,
                 self.columns,

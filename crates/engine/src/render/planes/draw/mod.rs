@@ -5,12 +5,13 @@ mod scalar;
 
 use crate::render::buffers::frame::Frame;
 use crate::render::buffers::visplane::Span;
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::planes::shader::PlaneShader;
 use crate::render::textures::flat::FlatTexture;
 use crate::simd::{Simd, dispatch};
 
 /// Draws runs of pixels.
-pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
+pub(crate) fn draw<D: DepthBuffer, C: ClassBuffer>(
     shader: &PlaneShader,
     simd: Simd,
     frame: &mut Frame,
@@ -19,15 +20,15 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
 ) {
     match flat {
         FlatTexture::Small(texels) => {
-            draw_from::<DEPTH, CLASS, 6, { 64 * 64 }>(shader, simd, frame, texels, spans)
+            draw_from::<D, C, 6, { 64 * 64 }>(shader, simd, frame, texels, spans)
         }
         FlatTexture::Large(texels) => {
-            draw_from::<DEPTH, CLASS, 7, { 128 * 128 }>(shader, simd, frame, texels, spans)
+            draw_from::<D, C, 7, { 128 * 128 }>(shader, simd, frame, texels, spans)
         }
     }
 }
 
-fn draw_from<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS: usize>(
+fn draw_from<D: DepthBuffer, C: ClassBuffer, const BITS: u32, const TEXELS: usize>(
     shader: &PlaneShader,
     simd: Simd,
     frame: &mut Frame,
@@ -35,8 +36,8 @@ fn draw_from<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS
     spans: &[Span],
 ) {
     dispatch!(simd;
-        avx512 => avx2::draw::<DEPTH, CLASS, BITS, TEXELS>(shader, frame, texels, spans),
-        avx2 => avx2::draw::<DEPTH, CLASS, BITS, TEXELS>(shader, frame, texels, spans),
-        scalar => scalar::draw::<DEPTH, CLASS, BITS, TEXELS>(shader, frame, texels, spans),
+        avx512 => avx2::draw::<D, C, BITS, TEXELS>(shader, frame, texels, spans),
+        avx2 => avx2::draw::<D, C, BITS, TEXELS>(shader, frame, texels, spans),
+        scalar => scalar::draw::<D, C, BITS, TEXELS>(shader, frame, texels, spans),
     );
 }

@@ -2,12 +2,13 @@
 
 use crate::render::buffers::frame::Frame;
 use crate::render::buffers::visplane::Span;
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::planes::row;
 use crate::render::planes::shader::PlaneShader;
 
 /// Draws spans of a square texture of side `2^BITS`.
 #[inline]
-pub(crate) fn draw<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS: usize>(
+pub(crate) fn draw<D: DepthBuffer, C: ClassBuffer, const BITS: u32, const TEXELS: usize>(
     shader: &PlaneShader,
     frame: &mut Frame,
     texels: &[u8; TEXELS],
@@ -25,6 +26,6 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool, const BITS: u32, const 
             shader.view.chunk_stride,
             fetch,
         );
-        shader.write::<DEPTH, CLASS>(frame, distance, start + first..start + end);
+        shader.write::<D, C>(frame, distance, start + first..start + end);
     }
 }

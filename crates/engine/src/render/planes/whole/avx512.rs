@@ -4,6 +4,7 @@
 
 use crate::render::buffers::frame::Frame;
 use crate::render::buffers::visplane::{SPAN_BLOCK, VisPlane};
+use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::planes::row::avx512::{self, ROW_VECTOR};
 use crate::render::planes::row::data::RowWalk;
 use crate::render::planes::shader::PlaneShader;
@@ -30,7 +31,7 @@ struct EightRows {
 
 /// Draws a plane, if it is small enough; returns whether it was.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
+pub(crate) fn draw<D: DepthBuffer, C: ClassBuffer>(
     shader: &PlaneShader,
     frame: &mut Frame,
     flat: &FlatTexture,
@@ -43,16 +44,16 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
     }
     match (flat, blocks) {
         (FlatTexture::Small(texels), 1) => {
-            draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 1>(shader, frame, texels, plane, first, end)
+            draw_rows::<D, C, 6, { 64 * 64 }, 1>(shader, frame, texels, plane, first, end)
         }
         (FlatTexture::Small(texels), _) => {
-            draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 2>(shader, frame, texels, plane, first, end)
+            draw_rows::<D, C, 6, { 64 * 64 }, 2>(shader, frame, texels, plane, first, end)
         }
         (FlatTexture::Large(texels), 1) => {
-            draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 1>(shader, frame, texels, plane, first, end)
+            draw_rows::<D, C, 7, { 128 * 128 }, 1>(shader, frame, texels, plane, first, end)
         }
         (FlatTexture::Large(texels), _) => {
-            draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 2>(shader, frame, texels, plane, first, end)
+            draw_rows::<D, C, 7, { 128 * 128 }, 2>(shader, frame, texels, plane, first, end)
         }
     }
     true
@@ -61,8 +62,8 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
 fn draw_rows<
-    const DEPTH: bool,
-    const CLASS: bool,
+    D: DepthBuffer,
+    C: ClassBuffer,
     const BITS: u32,
     const TEXELS: usize,
     const BLOCKS: usize,
@@ -110,12 +111,12 @@ fn draw_rows<
                     avx512::fetch::<BITS, TEXELS>(&walk, unlit, columns, texels);
                     mask &= !(((1 << ROW_VECTOR) - 1) << first);
                 }
-                if DEPTH || CLASS {
+                if D::WRITTEN || C::WRITTEN {
                     let (mut mask, left) =
                         (*whole, (from + i) * frame.width + plane.first + block * SPAN_BLOCK);
                     while mask != 0 {
                         let run = next_run(&mut mask);
-                        shader.write::<DEPTH, CLASS>(
+                        shader.write::<D, C>(
                             frame,
                             eight.distances[i],
                             left + run.start..left + run.end,

@@ -3,6 +3,7 @@
 
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::textures::wall::MOST_TEXELS;
 use crate::render::textures::wall::WallTexture;
 use crate::render::view::depth::DepthEncoding;
@@ -17,7 +18,7 @@ use std::arch::x86_64::*;
 /// Adds the `count` frame columns from `first` on of a wall that shows a picture with texels from
 /// `start` on, where `tops` are above `bottoms`; these lists are padded.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn add<const DEPTH: bool>(
+pub(crate) fn add<D: DepthBuffer>(
     batch: &mut WallBatch,
     shader: &WallShader,
     start: u32,
@@ -31,13 +32,13 @@ pub(crate) fn add<const DEPTH: bool>(
     for from in (0..count).step_by(WALL_BLOCK) {
         let (tops, bottoms) = (rows(&tops[from..]), rows(&bottoms[from..]));
         let shown = _mm512_mask_cmplt_epi64_mask(first_of_eight(count - from), tops, bottoms);
-        add_block::<DEPTH>(batch, shader, &slope, start, first + from, shown, [tops, bottoms]);
+        add_block::<D>(batch, shader, &slope, start, first + from, shown, [tops, bottoms]);
     }
 }
 
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-fn add_block<const DEPTH: bool>(
+fn add_block<D: DepthBuffer>(
     batch: &mut WallBatch,
     shader: &WallShader,
     slope: &WallSlope,
@@ -68,7 +69,7 @@ fn add_block<const DEPTH: bool>(
         shown,
         _mm512_and_si512(_mm512_sllv_epi64(all, tops), below),
     );
-    if DEPTH {
+    if D::WRITTEN {
         put_wide(&mut batch.distances[batch.count..], shown, distance);
     }
     batch.count += shown.count_ones() as usize;
@@ -76,7 +77,7 @@ fn add_block<const DEPTH: bool>(
 
 /// Draws the columns; `rows` are the frame's base rows, `texels` those of all pictures.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw<const DEPTH: bool>(
+pub(crate) fn draw<D: DepthBuffer>(
     batch: &WallBatch,
     frame: &mut Columns,
     rows: &[u32; ROW_BLOCK],
@@ -101,7 +102,7 @@ pub(crate) fn draw<const DEPTH: bool>(
         let lit = look_up_block(load_table(&tables[table_numbers[i] as usize & 31]), colours);
         let x = columns[i] as usize;
         store(&mut frame.colour_blocks()[x], masks[i], lit);
-        if DEPTH {
+        if D::WRITTEN {
             let depth = depths.wall(batch.distances[i] as i64, lasts[i] + 1);
             store(&mut frame.depth_blocks()[x], masks[i], _mm512_set1_epi8(depth as i8));
         }

@@ -8,6 +8,7 @@ pub mod data;
 
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::view::depth::DepthEncoding;
 use crate::render::walls::shader::WallShader;
 use crate::simd::{Level, Simd, dispatch};
@@ -22,7 +23,7 @@ pub(crate) fn is_used(simd: Simd) -> bool {
 /// `start` on, where `tops` are above `bottoms`; these lists are padded. Only where batches [are
 /// used](is_used).
 #[allow(clippy::too_many_arguments, reason = "a wall, its picture and its columns")]
-pub(crate) fn add<const DEPTH: bool>(
+pub(crate) fn add<D: DepthBuffer>(
     batch: &mut WallBatch,
     simd: Simd,
     shader: &WallShader,
@@ -33,14 +34,14 @@ pub(crate) fn add<const DEPTH: bool>(
     bottoms: &[i16],
 ) {
     dispatch!(simd;
-        avx512 => avx512::add::<DEPTH>(batch, shader, start, first, count, tops, bottoms),
+        avx512 => avx512::add::<D>(batch, shader, start, first, count, tops, bottoms),
         scalar => unreachable!("batches are of processors with 64-byte vectors alone"),
     );
 }
 
 /// Draws the columns and forgets them; `rows` are the frame's base rows, `texels` those of all
 /// pictures.
-pub(crate) fn draw<const DEPTH: bool>(
+pub(crate) fn draw<D: DepthBuffer>(
     batch: &mut WallBatch,
     simd: Simd,
     frame: &mut Columns,
@@ -50,7 +51,7 @@ pub(crate) fn draw<const DEPTH: bool>(
     depths: DepthEncoding,
 ) {
     dispatch!(simd;
-        avx512 => avx512::draw::<DEPTH>(batch, frame, rows, texels, tables, depths),
+        avx512 => avx512::draw::<D>(batch, frame, rows, texels, tables, depths),
         scalar => unreachable!("batches are of processors with 64-byte vectors alone"),
     );
     batch.clear();

@@ -1,20 +1,22 @@
 //! Clipping what is open of the columns of a seg.
 
 crate::simd::kernel_files!(avx2, avx512, sixteen);
+pub mod parts;
 pub mod pass;
 mod rows;
 mod scalar;
 
 use crate::render::view::line::Edge;
+use crate::render::walls::clip::parts::{Parts, Side};
 use crate::simd::{Simd, dispatch};
 use pass::ClipLists;
 use std::ops::Range;
 
 /// In some columns the plane takes the rows up to the first edge, the wall those from there to the
-/// second one, and what is left stays open: from below if `FLOOR`, else from above. Where the plane
+/// second one, and what is left stays open: from below if the side is [`parts::Floor`], else from above. Where the plane
 /// has rows already, another one goes on. Returns whether any of the wall is to be seen.
 #[inline]
-pub(crate) fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+pub(crate) fn clip_columns<S: Side, P: Parts>(
     simd: Simd,
     lists: &mut ClipLists,
     columns: Range<usize>,
@@ -22,9 +24,9 @@ pub(crate) fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: boo
     edges: [Edge; 2],
 ) -> bool {
     dispatch!(simd;
-        avx512 => sixteen::clip_avx512::<FLOOR, PLANE, WALL>(lists, columns, plane, edges),
-        avx2 if edges.iter().all(Edge::is_exact) => sixteen::clip_avx2::<FLOOR, PLANE, WALL>(lists, columns, plane, edges),
-        scalar => pass::clip_by::<i16, FLOOR, PLANE, WALL>(lists, columns, plane, edges),
+        avx512 => sixteen::clip_avx512::<S, P>(lists, columns, plane, edges),
+        avx2 if edges.iter().all(Edge::is_exact) => sixteen::clip_avx2::<S, P>(lists, columns, plane, edges),
+        scalar => pass::clip_by::<i16, S, P>(lists, columns, plane, edges),
     )
 }
 
@@ -39,6 +41,7 @@ mod tests {
     use crate::render::buffers::visplane::VisPlanes;
     use crate::render::view::size::FrameSize;
     use crate::render::view::tables::View;
+    use crate::render::walls::clip::parts::{Ceiling, Floor, PlaneAndWall, PlaneOnly, WallOnly};
 
     const KEY: VisPlaneKey =
         VisPlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
@@ -78,22 +81,22 @@ mod tests {
             (rows, open, self.wall.clone().map(|list| list[columns.clone()].to_vec()), planes)
         }
 
-        fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+        fn clip_columns<S: Side, P: Parts>(
             &mut self,
             simd: Simd,
             view: &View,
             columns: Range<usize>,
             edges: [Edge; 2],
         ) -> bool {
-            let plane = if PLANE { self.planes.find(KEY) } else { 0 };
+            let plane = if P::PLANE { self.planes.find(KEY) } else { 0 };
             let wall = self.wall.each_mut().map(|list| &mut list[..]);
             let mut lists =
                 ClipLists { view, clip: &mut self.clip, planes: &mut self.planes, wall };
-            clip_columns::<FLOOR, PLANE, WALL>(simd, &mut lists, columns, plane, edges)
+            clip_columns::<S, P>(simd, &mut lists, columns, plane, edges)
         }
 
         /// What it means, a column at a time, where the plane has no rows yet.
-        fn narrow_plainly<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+        fn narrow_plainly<S: Side, P: Parts>(
             &mut self,
             view: &View,
             columns: Range<usize>,
@@ -111,23 +114,23 @@ mod tests {
                 };
                 let (top, bottom) = (tops[x], bottoms[x]);
                 let row = frame_row(edge).max(top).min(bottom);
-                let far = if FLOOR {
+                let far = if S::FLOOR {
                     frame_row(wall).max(top).min(row)
                 } else {
                     frame_row(wall).max(row).min(bottom)
                 };
-                let open = if WALL { far } else { row };
-                if PLANE {
+                let open = if P::WALL { far } else { row };
+                if P::PLANE {
                     let plane = self.planes.find(KEY);
                     let [plane_top, plane_bottom] = self.planes.columns(plane, x, x + 1);
                     (plane_top[0], plane_bottom[0]) =
-                        if FLOOR { (row, bottom) } else { (top, row) };
+                        if S::FLOOR { (row, bottom) } else { (top, row) };
                 }
-                if WALL {
-                    (uppers[x], lowers[x]) = if FLOOR { (open, row) } else { (row, open) };
+                if P::WALL {
+                    (uppers[x], lowers[x]) = if S::FLOOR { (open, row) } else { (row, open) };
                     walled |= open != row;
                 }
-                *(if FLOOR { &mut bottoms[x] } else { &mut tops[x] }) = open;
+                *(if S::FLOOR { &mut bottoms[x] } else { &mut tops[x] }) = open;
                 if tops[x] >= bottoms[x] {
                     closed.push(x);
                 }
@@ -137,7 +140,7 @@ mod tests {
         }
     }
 
-    fn compare<const FLOOR: bool, const PLANE: bool, const WALL: bool>(view: &View, rng: &mut Rng) {
+    fn compare<S: Side, P: Parts>(view: &View, rng: &mut Rng) {
         let (width, rows) = (view.width(), view.view_rows as i32);
         let mut lists = Lists::new(view);
         for x in 0..width {
@@ -158,11 +161,11 @@ mod tests {
         };
         let edges = [edge(rows), edge(rows * 200)];
         let mut plain = lists.clone();
-        let walled = plain.narrow_plainly::<FLOOR, PLANE, WALL>(view, columns.clone(), edges);
+        let walled = plain.narrow_plainly::<S, P>(view, columns.clone(), edges);
         for simd in Simd::available() {
             let mut lists = lists.clone();
             assert_eq!(
-                lists.clip_columns::<FLOOR, PLANE, WALL>(simd, view, columns.clone(), edges),
+                lists.clip_columns::<S, P>(simd, view, columns.clone(), edges),
                 walled,
                 "{simd:?}"
             );
@@ -176,12 +179,12 @@ mod tests {
         for (width, height) in [(128, 72), (160, 120), (100, 50), (1920, 1080)] {
             let view = View::new(FrameSize { width, height }).unwrap();
             for _ in 0..200 {
-                compare::<false, true, false>(&view, &mut rng);
-                compare::<false, true, true>(&view, &mut rng);
-                compare::<false, false, true>(&view, &mut rng);
-                compare::<true, true, false>(&view, &mut rng);
-                compare::<true, true, true>(&view, &mut rng);
-                compare::<true, false, true>(&view, &mut rng);
+                compare::<Ceiling, PlaneOnly>(&view, &mut rng);
+                compare::<Ceiling, PlaneAndWall>(&view, &mut rng);
+                compare::<Ceiling, WallOnly>(&view, &mut rng);
+                compare::<Floor, PlaneOnly>(&view, &mut rng);
+                compare::<Floor, PlaneAndWall>(&view, &mut rng);
+                compare::<Floor, WallOnly>(&view, &mut rng);
             }
         }
     }
@@ -195,7 +198,7 @@ mod tests {
             let plane = lists.planes.find(KEY);
             let [plane_top, plane_bottom] = lists.planes.columns(plane, 40, 41);
             (plane_top[0], plane_bottom[0]) = (3, 4);
-            assert!(!lists.clip_columns::<false, true, false>(simd, &view, 0..64, edges));
+            assert!(!lists.clip_columns::<Ceiling, PlaneOnly>(simd, &view, 0..64, edges));
             let [first, other] = lists.planes.used() else {
                 panic!("{} planes", lists.planes.used().len())
             };

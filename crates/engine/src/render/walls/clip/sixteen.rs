@@ -8,6 +8,7 @@
 use crate::render::blocks::COLUMN_BLOCK;
 use crate::render::view::line::Edge;
 use crate::render::view::tables::RowScale;
+use crate::render::walls::clip::parts::{Parts, Side};
 use crate::render::walls::clip::pass::{ClipLists, clip_by};
 use crate::render::walls::clip::rows::Rows;
 use crate::render::walls::clip::{avx2, avx512};
@@ -133,22 +134,22 @@ pub(crate) type Avx512 = Wide<true>;
 
 /// [`clip_by`] compiled for vectors of 32 bytes.
 #[target_feature(enable = "avx2")]
-pub(crate) fn clip_avx2<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+pub(crate) fn clip_avx2<S: Side, P: Parts>(
     lists: &mut ClipLists,
     columns: Range<usize>,
     plane: u16,
     edges: [Edge; 2],
 ) -> bool {
-    clip_by::<Avx2, FLOOR, PLANE, WALL>(lists, columns, plane, edges)
+    clip_by::<Avx2, S, P>(lists, columns, plane, edges)
 }
 
 /// [`clip_by`] compiled for vectors of 64 bytes.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-pub(crate) fn clip_avx512<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+pub(crate) fn clip_avx512<S: Side, P: Parts>(
     lists: &mut ClipLists,
     columns: Range<usize>,
     plane: u16,
     edges: [Edge; 2],
 ) -> bool {
-    clip_by::<Avx512, FLOOR, PLANE, WALL>(lists, columns, plane, edges)
+    clip_by::<Avx512, S, P>(lists, columns, plane, edges)
 }

@@ -2,6 +2,7 @@
 //! products and quotients: doubles, where they are exact, and products of halves stand in.
 
 use crate::render::buffers::frame::Columns;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::{
     INVERSE_BITS, LEAST_INVERSE, ProjectedLine, TextureLine, fits_doubles,
@@ -46,7 +47,7 @@ pub(crate) fn fits(shader: &WallShader) -> bool {
 
 /// [`WallShader::draw`] of a wall that [fits].
 #[target_feature(enable = "avx2,fma")]
-pub(crate) fn draw<const DEPTH: bool>(
+pub(crate) fn draw<D: DepthBuffer>(
     shader: &WallShader,
     frame: &mut Columns,
     first: usize,
@@ -69,7 +70,7 @@ pub(crate) fn draw<const DEPTH: bool>(
             (_, 64) => draw_block::<128, 64>(shader, &columns, frame, first, tops, bottoms),
             _ => draw_block::<128, 256>(shader, &columns, frame, first, tops, bottoms),
         }
-        if DEPTH {
+        if D::WRITTEN {
             for (x, ((&top, &bottom), distance)) in
                 (first..).zip(tops.iter().zip(bottoms).zip(columns.distance))
             {

@@ -1,6 +1,7 @@
 //! What eight columns of a wall show, side by side, with vectors of 64 bytes.
 
 use crate::render::buffers::frame::Columns;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::view::light::ONE_TABLE_DISTANCE;
 use crate::render::view::light_avx512::tables;
 use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, ProjectedLine, TextureLine};
@@ -147,7 +148,7 @@ impl WallColumns {
 /// is worked out at once. The whole loop is compiled for these instructions, as what is done for a
 /// column is short: calls into functions for others would be much of it.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw<const DEPTH: bool>(
+pub(crate) fn draw<D: DepthBuffer>(
     shader: &WallShader,
     simd: Simd,
     frame: &mut Columns,
@@ -165,7 +166,7 @@ pub(crate) fn draw<const DEPTH: bool>(
         for i in from..(from + WALL_BLOCK).min(tops.len()) {
             if tops[i] < bottoms[i] {
                 let rows = [tops[i] as usize, bottoms[i] as usize];
-                scalar::draw_column::<DEPTH>(
+                scalar::draw_column::<D>(
                     shader,
                     simd,
                     frame,

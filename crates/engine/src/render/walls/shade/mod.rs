@@ -4,11 +4,12 @@ crate::simd::kernel_files!(avx2, avx512);
 mod scalar;
 
 use crate::render::buffers::frame::Columns;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::walls::shader::WallShader;
 use crate::simd::{Simd, dispatch};
 
 /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on, into the frame's columns.
-pub(crate) fn draw<const DEPTH: bool>(
+pub(crate) fn draw<D: DepthBuffer>(
     shader: &WallShader,
     simd: Simd,
     frame: &mut Columns,
@@ -17,9 +18,9 @@ pub(crate) fn draw<const DEPTH: bool>(
     bottoms: &[i16],
 ) {
     dispatch!(simd;
-        avx512 => avx512::draw::<DEPTH>(shader, simd, frame, first, tops, bottoms),
-        avx2 if avx2::fits(shader) => avx2::draw::<DEPTH>(shader, frame, first, tops, bottoms),
-        scalar => scalar::draw::<DEPTH>(shader, simd, frame, first, tops, bottoms),
+        avx512 => avx512::draw::<D>(shader, simd, frame, first, tops, bottoms),
+        avx2 if avx2::fits(shader) => avx2::draw::<D>(shader, frame, first, tops, bottoms),
+        scalar => scalar::draw::<D>(shader, simd, frame, first, tops, bottoms),
     );
 }
 

@@ -1,6 +1,7 @@
 //! What one column of a wall shows, as a formula.
 
 use crate::render::buffers::frame::Columns;
+use crate::render::buffers::written::DepthBuffer;
 use crate::render::view::light::ONE_TABLE_DISTANCE;
 use crate::render::view::line::INVERSE_BITS;
 use crate::render::walls::column::{self, data::Column};
@@ -30,7 +31,7 @@ pub(crate) fn column(shader: &WallShader, slope: &WallSlope, column: i64) -> Wal
 
 /// Draws rows `top..bottom` of frame column `x`.
 #[inline(always)]
-pub(crate) fn draw_column<const DEPTH: bool>(
+pub(crate) fn draw_column<D: DepthBuffer>(
     shader: &WallShader,
     simd: Simd,
     frame: &mut Columns,
@@ -41,7 +42,7 @@ pub(crate) fn draw_column<const DEPTH: bool>(
     let column =
         Column { texels: shader.picture.column(u), table: &shader.tables[table], at, step };
     column::draw(&column, simd, frame.colour_of(x), &shader.view.rows, top, bottom);
-    if DEPTH {
+    if D::WRITTEN {
         let depth = shader.depths.wall(distance, shader.picture.height);
         frame.depth_of(x)[top..bottom].fill(depth);
     }
@@ -49,7 +50,7 @@ pub(crate) fn draw_column<const DEPTH: bool>(
 }
 
 /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on.
-pub(crate) fn draw<const DEPTH: bool>(
+pub(crate) fn draw<D: DepthBuffer>(
     shader: &WallShader,
     simd: Simd,
     frame: &mut Columns,
@@ -61,7 +62,7 @@ pub(crate) fn draw<const DEPTH: bool>(
     for (x, (&top, &bottom)) in (first..).zip(tops.iter().zip(bottoms)) {
         if top < bottom {
             let shown = column(shader, &slope, i64::from(shader.view.columns[x]));
-            draw_column::<DEPTH>(shader, simd, frame, x, [top as usize, bottom as usize], shown);
+            draw_column::<D>(shader, simd, frame, x, [top as usize, bottom as usize], shown);
         }
     }
 }
