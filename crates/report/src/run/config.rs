@@ -250,6 +250,13 @@ impl Config {
             ("observation", "rgb"),
             ("frame_skip", "4"),
             ("frame_stack", "1"),
+            ("learning.products", "float32"),
+            ("learning.recompute_advantages", "false"),
+            ("learning.value_phase_passes", "6"),
+            ("learning.value_phase_clone", "1"),
+            ("learning.auxiliary_depth", "0"),
+            ("learning.auxiliary_labels", "0"),
+            ("network.policy_scale", "1"),
         ] {
             if options.get(key).is_some_and(|value| value.eq_ignore_ascii_case(usual)) {
                 options.remove(key);

@@ -226,3 +226,20 @@ fn damped_multipliers_are_called_what_they_are() {
         assert_eq!(Config::parse(&text).unwrap().algo, expected, "{algo} {damping}");
     }
 }
+
+/// A run of an older version lacks settings that a newer one writes down at their usual values:
+/// the two are one experiment.
+#[test]
+fn settings_at_their_usual_values_tell_nothing_apart() {
+    let run = |more: &str| {
+        let text = format!(
+            r#"{{"env":{{"id":"RemedyRushLevel1-v0"}},"algorithm":"PPO","seed":1,"learning":{{"rate":0.1{more}}}}}"#
+        );
+        Config::parse(&text).unwrap()
+    };
+    let newer = r#","products":"float32","recompute_advantages":false,"value_phase_passes":6,
+        "value_phase_clone":1.0,"auxiliary_depth":0.0,"auxiliary_labels":0.0"#;
+    assert_eq!(run(""), run(newer));
+    assert_ne!(run(""), run(r#","auxiliary_depth":0.5"#));
+    assert_ne!(run(""), run(r#","products":"bfloat16""#));
+}
