@@ -344,7 +344,15 @@ impl ApplicationHandler for App {
             Ok((window, surface))
         })();
         match opened {
-            Ok(surface) => self.surface = Some(surface),
+            Ok(surface) => {
+                // Not every desktop says at once how large the window is.
+                let size = surface.0.inner_size();
+                self.surface = Some(surface);
+                if self.settings.fits_window {
+                    let result = self.refit(size);
+                    self.check(result, events);
+                }
+            }
             Err(problem) => self.check(
                 Err(PlayError::Window(format!("no window can be opened: {problem}"))),
                 events,
