@@ -13,7 +13,7 @@ use std::process::{Command, Stdio};
 
 /// What makes a training take a quarter of a second.
 const SMALL: &str = "--envs 2 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
-                     --set episode_steps=8 --set sampling.spread_out=false --eval-every 64 --set evaluation.episodes=1 \
+                     --set episode_steps=8 --set sampling.spread_out=false --eval-every 64 --set evaluation.episodes=2 \
                      --set evaluation.confirming_episodes=2 --size 64x48 --quiet";
 
 /// Commands of other programs, and what tries them instead.

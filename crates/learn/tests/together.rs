@@ -99,6 +99,14 @@ fn short(algorithm: AlgorithmKind) -> TrainConfig {
         config.learning.recurrence = Some(8);
         config.learning.critic_inputs = CriticInput::ALL.to_vec();
     }
+    if algorithm == AlgorithmKind::P3o {
+        // Whatever else a frame may teach more by.
+        let learning = &mut config.learning;
+        (learning.epochs, learning.recompute_advantages) = (2, true);
+        (learning.auxiliary_depth, learning.auxiliary_labels) = (0.1, 0.1);
+        (learning.value_phase, learning.value_phase_passes) = (Some(2), 2);
+        learning.budget_annealing = Some(0.5);
+    }
     config
 }
 
