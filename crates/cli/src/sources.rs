@@ -11,7 +11,7 @@ use std::sync::Arc;
 const LARGEST_IWAD: u64 = 256 << 20;
 
 /// Otherwise usual options with the maps of `--maps` and the pictures of `--iwad`; without them the
-/// built-in ones. What of a map is left out is told on the terminal.
+/// built-in ones. What of a map is left out is written to the terminal.
 pub fn looks(maps: Option<&Path>, iwad: Option<&Path>) -> Result<EnvOptions, Failure> {
     looks_telling(maps, iwad, |left_out| note!("hasard: {left_out}"))
 }

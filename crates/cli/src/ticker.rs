@@ -5,7 +5,7 @@ use crate::progress::duration;
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-/// Time until a terminal, and until a log, is first told; what is over before says nothing.
+/// Time until a terminal, and until a log, first hears something; what is over before says nothing.
 const FIRST: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
 /// Time between a terminal's lines, and a log's.
 const EVERY: [Duration; 2] = [Duration::from_millis(200), Duration::from_secs(10)];

@@ -95,7 +95,7 @@ fn one_line(output: &Output, line: &str) -> String {
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{line}: {error}");
     let text = error.strip_suffix('\n').unwrap_or(&error);
-    // Each damaged checkpoint that is passed over is told of before.
+    // Each damaged checkpoint that is passed over is named before.
     let text =
         text.rsplit_once("going back to the checkpoint before it\n").map_or(text, |(_, last)| last);
     assert!(text.starts_with("hasard: ") && text.len() < 2000, "{line}: {error}");

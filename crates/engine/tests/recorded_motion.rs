@@ -137,7 +137,7 @@ fn armament_burden() -> World {
     World::new(grid_map("armament burden", &grid, (32.0, 736.0)), 1)
 }
 
-/// Precipice Plunge level 1: a corridor of 58 x 7 tiles whose floors have been told to sink, tile
+/// Precipice Plunge level 1: a corridor of 58 x 7 tiles whose floors sink, tile
 /// by tile.
 fn precipice_plunge() -> World {
     let tag_of = |column: usize, row: usize| {

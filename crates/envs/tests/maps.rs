@@ -1,4 +1,4 @@
-//! Maps from files: ours written and read again, a user's own, and what is told of those that
+//! Maps from files: ours written and read again, a user's own, and what is said of those that
 //! cannot be played.
 
 use hasard_engine::map::{MapSource, SourceThing, TextureName};

@@ -1,4 +1,4 @@
-//! Things that matter are told apart in the learner's 128x72 pixels.
+//! Things that matter are different in the learner's 128x72 pixels.
 
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::render::{Buffers, SegmentationColours};

@@ -31,7 +31,7 @@ pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
         ("actions-of", format!("{rules} {}", if hard { "hard" } else { "soft" }))
     });
     let together = options.together.as_ref().map(|space| ("together", space.names()));
-    // An own scenario goes with the file that it is told in.
+    // An own scenario goes with the file that describes it.
     let own = options.scenario.and_then(|scenario| scenario.file);
     let own = own
         .into_iter()

@@ -1,4 +1,4 @@
-//! The 18 environments, told to Python.
+//! The 18 environments, for Python.
 
 use crate::errors::raise;
 use hasard_envs::{ActionSpace, EnvError, EnvId, RuleSet, Scenario, own, scenarios};

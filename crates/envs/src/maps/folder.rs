@@ -26,9 +26,9 @@ pub struct Maps {
     place: PathBuf,
     /// The IWAD that their pictures are laid over.
     iwad: Option<PathBuf>,
-    /// Who is told what is left out.
+    /// Gets a line about what is left out.
     tell: Option<fn(&str)>,
-    /// What was told already.
+    /// Lines that it got already.
     told: Arc<Mutex<BTreeSet<String>>>,
 }
 

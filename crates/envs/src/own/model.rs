@@ -201,7 +201,7 @@ pub(super) struct Spawn {
     pub health: Option<i32>,
     pub speed: Option<i32>,
     pub goal: Goal,
-    /// Its things are told from others of their kind: somebody asks for them by name, or they come
+    /// Its things are marked among others of their kind: somebody asks for them by name, or they come
     /// back.
     pub marked: bool,
 }

@@ -12,10 +12,10 @@ use hasard_engine::world::ActorKind;
 /// First tag that tiles get; a letter of the legend that needs one has its number added.
 pub(super) const FIRST_TAG: i32 = 1000;
 
-/// Kinds of happenings, each with its own list of rules.
+/// Kinds of occasions on which rules act, each with its own list of rules.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(usize)]
-pub(super) enum Happening {
+pub(super) enum Occasion {
     Start,
     Pickup,
     Damage,
@@ -35,30 +35,30 @@ pub(super) enum Happening {
     Near,
 }
 
-/// Number of kinds of happenings.
-const HAPPENINGS: usize = Happening::Near as usize + 1;
+/// Number of kinds of occasions.
+const OCCASIONS: usize = Occasion::Near as usize + 1;
 
-impl Happening {
+impl Occasion {
     /// The kind of a trigger.
-    pub const fn of(trigger: Trigger) -> Happening {
+    pub const fn of(trigger: Trigger) -> Occasion {
         match trigger {
-            Trigger::Start => Happening::Start,
-            Trigger::Pickup(_) => Happening::Pickup,
-            Trigger::Damage { .. } => Happening::Damage,
-            Trigger::Death => Happening::Death,
-            Trigger::Kill(_) => Happening::Kill,
-            Trigger::Hit(_) => Happening::Hit,
-            Trigger::Shot => Happening::Shot,
-            Trigger::Enter(_) => Happening::Enter,
-            Trigger::Leave(_) => Happening::Leave,
-            Trigger::In(_) => Happening::In,
-            Trigger::Land => Happening::Land,
-            Trigger::Jump => Happening::Jump,
-            Trigger::Use => Happening::Use,
-            Trigger::Timer { .. } => Happening::Timer,
-            Trigger::Step => Happening::Step,
-            Trigger::Counter { .. } => Happening::Counter,
-            Trigger::Near { .. } => Happening::Near,
+            Trigger::Start => Occasion::Start,
+            Trigger::Pickup(_) => Occasion::Pickup,
+            Trigger::Damage { .. } => Occasion::Damage,
+            Trigger::Death => Occasion::Death,
+            Trigger::Kill(_) => Occasion::Kill,
+            Trigger::Hit(_) => Occasion::Hit,
+            Trigger::Shot => Occasion::Shot,
+            Trigger::Enter(_) => Occasion::Enter,
+            Trigger::Leave(_) => Occasion::Leave,
+            Trigger::In(_) => Occasion::In,
+            Trigger::Land => Occasion::Land,
+            Trigger::Jump => Occasion::Jump,
+            Trigger::Use => Occasion::Use,
+            Trigger::Timer { .. } => Occasion::Timer,
+            Trigger::Step => Occasion::Step,
+            Trigger::Counter { .. } => Occasion::Counter,
+            Trigger::Near { .. } => Occasion::Near,
         }
     }
 }
@@ -74,8 +74,8 @@ pub(super) struct LooseTile {
 #[derive(Debug)]
 pub(super) struct Program {
     pub plan: Plan,
-    /// The rules of each kind of happening, in the order of the file.
-    lists: [Vec<u16>; HAPPENINGS],
+    /// The rules of each kind of occasion, in the order of the file.
+    lists: [Vec<u16>; OCCASIONS],
     /// The zones of each sector, a bit each.
     pub zones_of: Vec<u32>,
     /// Zones that are rectangles.
@@ -95,7 +95,7 @@ pub(super) struct Program {
     pub waggles: Vec<(i32, i32, i32)>,
     /// Damage of tags: points, tics.
     pub damages: Vec<(i32, [i32; 2])>,
-    /// Of each kind of thing the spawn that brings it back, if its things are not told apart.
+    /// Of each kind of thing the spawn that brings it back, if its things are not marked.
     pub comes_back: Vec<(ActorKind, u8)>,
     /// Names of the counters, for statistics.
     pub names: Vec<&'static str>,
@@ -108,9 +108,9 @@ pub(super) struct Program {
 impl Program {
     /// The tables of a plan in a map.
     pub fn new(plan: Plan, map: &Map, names: &[&'static str]) -> Result<Program, EnvError> {
-        let mut lists: [Vec<u16>; HAPPENINGS] = std::array::from_fn(|_| Vec::new());
+        let mut lists: [Vec<u16>; OCCASIONS] = std::array::from_fn(|_| Vec::new());
         for (index, when) in plan.whens.iter().enumerate() {
-            lists[Happening::of(when.trigger) as usize].push(index as u16);
+            lists[Occasion::of(when.trigger) as usize].push(index as u16);
         }
         let mut program = Program {
             lists,
@@ -149,16 +149,16 @@ impl Program {
         Ok(program)
     }
 
-    /// The rules of a kind of happening.
-    pub fn rules(&self, happening: Happening) -> impl Iterator<Item = (u16, &When)> {
-        self.lists[happening as usize]
+    /// The rules of a kind of occasion.
+    pub fn rules(&self, occasion: Occasion) -> impl Iterator<Item = (u16, &When)> {
+        self.lists[occasion as usize]
             .iter()
             .map(|index| (*index, &self.plan.whens[usize::from(*index)]))
     }
 
-    /// Whether a kind of happening has rules.
-    pub fn has(&self, happening: Happening) -> bool {
-        !self.lists[happening as usize].is_empty()
+    /// Whether a kind of occasion has rules.
+    pub fn has(&self, occasion: Occasion) -> bool {
+        !self.lists[occasion as usize].is_empty()
     }
 
     /// The areas of a place.

@@ -19,7 +19,7 @@ pub(super) fn spawns(nodes: &[Node], zones: &[Zone], mistakes: &mut Mistakes) ->
                 format!("two [[spawn]] are called {}", name.unwrap_or_default()),
             );
         }
-        // Kinds that several tables put down are told apart where one of them comes back.
+        // Kinds that several tables put down are marked where one of them comes back.
         let shared = |other: &Spawn| {
             other
                 .kinds

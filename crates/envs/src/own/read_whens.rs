@@ -22,7 +22,7 @@ const SOURCES: [(&str, &[DamageKind]); 6] = [
     ("rocket", &[DamageKind::Rocket]),
     ("blast", &[DamageKind::Splash]),
     ("barrel", &[DamageKind::Barrel]),
-    ("rule", &[DamageKind::Script]),
+    ("script", &[DamageKind::Script]),
 ];
 
 /// Reads all of them.
@@ -264,9 +264,14 @@ fn damage(by: Option<&[(&str, usize)]>, zones: &[Zone], mistakes: &mut Mistakes)
     let Some(by) = by else { return Trigger::Damage { kinds: u32::MAX, zones: 0 } };
     let (mut kinds, mut places) = (0, 0);
     for (name, at) in by {
-        if let Some((_, found)) = SOURCES.iter().find(|(known, _)| known == name) {
+        let zone = zones.iter().position(|zone| zone.name == *name);
+        // Files from before the names were those of Python say `rule`; their zones keep their names.
+        let source = if *name == "rule" { "script" } else { name };
+        let is_source = !(*name == "script" && zone.is_some());
+        let found = SOURCES.iter().find(|(known, _)| is_source && *known == source);
+        if let Some((_, found)) = found {
             found.iter().for_each(|kind| kinds |= 1 << *kind as u32);
-        } else if let Some(index) = zones.iter().position(|zone| zone.name == *name) {
+        } else if let Some(index) = zone {
             places |= 1 << index;
         } else {
             let known = zones.iter().map(|zone| &*zone.name).chain(SOURCES.map(|(known, _)| known));

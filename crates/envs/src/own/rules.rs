@@ -4,7 +4,7 @@
 
 use super::model::{Of, Trigger, When};
 use super::placing::move_player;
-use super::program::{Happening, Program};
+use super::program::{Occasion, Program};
 use super::walkers::{self, Walker};
 use crate::scenarios::Rules;
 use crate::scenarios::common::outcome::Outcome;
@@ -52,7 +52,7 @@ pub(super) struct OwnRules {
     pub walkers: Vec<Walker>,
     /// Places that may still be tried in this tic: a file cannot make a tic last for ever.
     pub tries: u32,
-    /// Who is told of spawns that find no room: a rehearsal.
+    /// Notes spawns that find no room: for a rehearsal.
     pub unplaced: Option<Arc<AtomicU64>>,
 }
 
@@ -95,13 +95,13 @@ impl OwnRules {
     fn tell(
         &mut self,
         program: &Program,
-        happening: Happening,
+        occasion: Occasion,
         amount: f64,
         world: &mut World,
         outcome: &mut Outcome,
         asked: impl Fn(Trigger) -> bool,
     ) {
-        for (index, when) in program.rules(happening) {
+        for (index, when) in program.rules(occasion) {
             if asked(when.trigger) && self.account(program, index, when, amount, world.tic, outcome)
             {
                 self.act(program, when, world, outcome);
@@ -196,7 +196,7 @@ impl OwnRules {
         while next < self.changes.len() {
             let Change { counter, before, after } = self.changes[next];
             next += 1;
-            self.tell(program, Happening::Counter, 1.0, world, outcome, |trigger| {
+            self.tell(program, Occasion::Counter, 1.0, world, outcome, |trigger| {
                 matches!(trigger, Trigger::Counter { counter: of, reaches } if of == counter && before < reaches && after >= reaches)
             });
         }
@@ -214,7 +214,7 @@ impl OwnRules {
                 Event::PickedUp { kind, tid, .. } => {
                     self.tell(
                         program,
-                        Happening::Pickup,
+                        Occasion::Pickup,
                         1.0,
                         world,
                         outcome,
@@ -227,7 +227,7 @@ impl OwnRules {
                     let floor = by == hasard_engine::world::DamageKind::Sector;
                     self.tell(
                         program,
-                        Happening::Damage,
+                        Occasion::Damage,
                         f64::from(amount),
                         world,
                         outcome,
@@ -246,7 +246,7 @@ impl OwnRules {
                     };
                     self.tell(
                         program,
-                        Happening::Hit,
+                        Occasion::Hit,
                         f64::from(amount),
                         world,
                         outcome,
@@ -254,13 +254,13 @@ impl OwnRules {
                     );
                 }
                 Event::Died { victim, .. } if victim == player => {
-                    self.tell(program, Happening::Death, 1.0, world, outcome, |_| true);
+                    self.tell(program, Occasion::Death, 1.0, world, outcome, |_| true);
                 }
                 Event::Died { kind, tid, source, .. } => {
                     if source == Some(player) {
                         self.tell(
                             program,
-                            Happening::Kill,
+                            Occasion::Kill,
                             1.0,
                             world,
                             outcome,
@@ -272,10 +272,10 @@ impl OwnRules {
                 Event::Landed { .. } => {
                     let fallen =
                         world.get(player).map_or(0.0, |body| (self.peak - body.z).to_f64());
-                    self.tell(program, Happening::Land, fallen, world, outcome, |_| true);
+                    self.tell(program, Occasion::Land, fallen, world, outcome, |_| true);
                 }
                 Event::Fired { .. } => {
-                    self.tell(program, Happening::Shot, 1.0, world, outcome, |_| true)
+                    self.tell(program, Occasion::Shot, 1.0, world, outcome, |_| true)
                 }
                 _ => {}
             }
@@ -311,7 +311,7 @@ impl OwnRules {
             let (come, gone) = (zones & !before, before & !zones);
             self.tell(
                 program,
-                Happening::Leave,
+                Occasion::Leave,
                 1.0,
                 world,
                 outcome,
@@ -319,7 +319,7 @@ impl OwnRules {
             );
             self.tell(
                 program,
-                Happening::Enter,
+                Occasion::Enter,
                 1.0,
                 world,
                 outcome,
@@ -334,34 +334,34 @@ impl OwnRules {
         let (jumping, using, on_ground) =
             (player.jump_tics < 0, player.buttons.any(Buttons::USE), player.on_ground);
         if jumping && !std::mem::replace(&mut self.jumping, jumping) {
-            self.tell(program, Happening::Jump, 1.0, world, outcome, |_| true);
+            self.tell(program, Occasion::Jump, 1.0, world, outcome, |_| true);
         }
         if using && !std::mem::replace(&mut self.using, using) {
-            self.tell(program, Happening::Use, 1.0, world, outcome, |_| true);
+            self.tell(program, Occasion::Use, 1.0, world, outcome, |_| true);
         }
         (self.jumping, self.using) = (jumping, using);
         if let Some(body) = world.get(world.players[0].actor) {
             self.peak = if on_ground { body.z } else { self.peak.max(body.z) };
         }
-        if program.has(Happening::In) {
+        if program.has(Occasion::In) {
             let zones = self.zones;
             self.tell(
                 program,
-                Happening::In,
+                Occasion::In,
                 1.0,
                 world,
                 outcome,
                 |trigger| matches!(trigger, Trigger::In(zone) if zones >> zone & 1 == 1),
             );
         }
-        if program.has(Happening::Near) {
+        if program.has(Occasion::Near) {
             self.read_near(program, world, outcome);
         }
     }
 
     fn read_near(&mut self, program: &Program, world: &mut World, outcome: &mut Outcome) {
         let Some(body) = world.get(world.players[0].actor).copied() else { return };
-        for (index, when) in program.rules(Happening::Near) {
+        for (index, when) in program.rules(Occasion::Near) {
             let Trigger::Near { of, within } = when.trigger else { continue };
             let near = world.living().any(|(id, actor)| {
                 let there = names(of, actor.kind, actor.tid) && id != world.players[0].actor;
@@ -385,10 +385,10 @@ impl OwnRules {
             0 => tic == first,
             _ => tic >= first && (tic - first).is_multiple_of(every),
         };
-        if program.has(Happening::Timer) {
+        if program.has(Occasion::Timer) {
             self.tell(
                 program,
-                Happening::Timer,
+                Occasion::Timer,
                 1.0,
                 world,
                 outcome,
@@ -439,7 +439,7 @@ impl Rules for OwnRules {
         if world.tic == 0 {
             self.open(&program, world);
             self.look_around(&program, world, outcome);
-            self.tell(&program, Happening::Start, 1.0, world, outcome, |_| true);
+            self.tell(&program, Occasion::Start, 1.0, world, outcome, |_| true);
         }
         self.read_events(&program, world, outcome);
         self.look_around(&program, world, outcome);
@@ -452,9 +452,9 @@ impl Rules for OwnRules {
     }
 
     fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {
-        if self.program.has(Happening::Step) {
+        if self.program.has(Occasion::Step) {
             let program = Arc::clone(&self.program);
-            for (index, when) in program.rules(Happening::Step) {
+            for (index, when) in program.rules(Occasion::Step) {
                 self.account(&program, index, when, 1.0, world.tic, outcome);
             }
         }

@@ -230,3 +230,23 @@ fn conditions_that_never_hold_and_a_missing_start_are_warned_of() {
     assert!(!warned(&text, "no tile is a start"));
     assert!(warned(&text.replace('@', "."), "no tile is a start"));
 }
+
+#[test]
+fn what_hurts_has_one_name_in_files_and_in_events() {
+    let of = |name: &str| {
+        corridor(&format!(
+            "[[when]]\nevent = \"damage\"\nby = [\"{name}\"]\ncost = {{ hurt = 1 }}\n"
+        ))
+    };
+    let unknown = |name: &str| {
+        let mistakes = check(&of(name)).mistakes;
+        mistakes.into_iter().find(|mistake| mistake.text.contains("source of damage"))
+    };
+    // A fall has an event of its own.
+    let known = crate::DAMAGE_CAUSES.into_iter().filter(|name| *name != "fall");
+    // Files from before say `rule`.
+    for name in known.chain(["rule"]) {
+        assert_eq!(unknown(name), None, "{name}");
+    }
+    assert!(unknown("wind").unwrap().text.contains("script"));
+}

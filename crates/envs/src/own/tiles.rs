@@ -34,7 +34,7 @@ fn tag(index: usize) -> i32 {
     FIRST_TAG + index as i32
 }
 
-/// Whether the tiles of a kind must be told from others by the rules.
+/// Whether the tiles of a kind must have a tag for the rules.
 fn needs_tag(kind: &TileKind) -> bool {
     let moves = kind.floor[0] != kind.floor[1] || kind.waggle.is_some() || kind.damage.is_some();
     moves || kind.zone.is_some()

@@ -87,7 +87,7 @@ impl Scenario {
     }
 }
 
-/// Whether a scenario may be called so: its ids must be told from those of levels, and from paths.
+/// Whether a scenario may be called so: its ids must differ from those of levels, and from paths.
 pub(crate) fn is_name(name: &str) -> bool {
     let plain = name.bytes().all(|byte| byte.is_ascii_alphanumeric())
         && name.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());

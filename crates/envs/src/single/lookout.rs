@@ -7,7 +7,7 @@ use hasard_engine::world::{Actor, World};
 /// Distance at which a thing is half as near as one that is touched, map units.
 const HALF_NEAR: u64 = 64;
 
-/// The ends of a map, between which places are told.
+/// The ends of a map, between which places are given.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ends {
     /// From and to: west to east, south to north, lowest floor to highest ceiling.

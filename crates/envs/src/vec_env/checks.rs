@@ -1,4 +1,4 @@
-//! What is wrong with what a batch of worlds is given, told before any world moves.
+//! What is wrong with what a batch of worlds is given, found before any world moves.
 
 use super::chosen::{Chosen, Restart};
 use super::lane_state::LaneState;
@@ -38,7 +38,7 @@ impl Shape {
         Ok(())
     }
 
-    /// Whether each lane's action lies in the action space; a wrong one is told with its lane of
+    /// Whether each lane's action lies in the action space; a wrong one is named with its lane of
     /// the whole.
     pub(super) fn check_actions(&self, batch: &Batch, lanes: &Chosen) -> Result<(), EnvError> {
         let (groups, continuous) = (self.space.groups.len(), self.space.deltas.len());

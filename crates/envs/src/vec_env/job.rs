@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex};
 pub(super) enum Job {
     /// Starts the next episode.
     Reset,
-    /// Resets each lane of the whole as it is told.
+    /// Resets each lane of the whole in its own way.
     Restart(Arc<[Restart]>),
     Step,
     /// Starts the seeds of episodes anew from a seed, nothing more.

@@ -255,7 +255,7 @@ impl Lane {
         LaneState { seeds: self.seeds.state(), seed: self.seed, actions, deltas }
     }
 
-    /// Resets the lane as it is told and shows where it is then.
+    /// Resets the lane in the given way and shows where it is then.
     pub fn reset(&mut self, how: Restart, slices: LaneSlices) {
         match how {
             Restart::Stay => {}

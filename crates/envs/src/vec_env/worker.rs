@@ -47,7 +47,7 @@ impl Shared {
     }
 }
 
-/// Works until told to stop.
+/// Works until it has to stop.
 pub(super) fn work(worker: usize, shared: Arc<Shared>) {
     let mut seen = 0;
     let mut idle_looks = 0;

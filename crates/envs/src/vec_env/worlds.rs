@@ -254,7 +254,7 @@ impl VecEnv {
         self.exchange(batch, Job::Reset)
     }
 
-    /// Resets each lane as it is told, `how[lane]`: some, with a seed each or without, while others
+    /// Resets each lane as `how[lane]` says: some, with a seed each or without, while others
     /// stay where they are. The batch shows all of them.
     pub fn restart(&mut self, how: &[Restart], batch: &mut Batch) -> Result<(), EnvError> {
         self.shape.check_restarts(how)?;

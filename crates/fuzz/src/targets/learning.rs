@@ -236,7 +236,7 @@ fn go_on(bytes: &[u8]) -> bool {
     });
     match went_on {
         Ok(_) => true,
-        // A thread's panic is told as an error; here it is a finding.
+        // A thread's panic is reported as an error; here it is a finding.
         Err(LearnError::Panic(text)) => panic!("{text}"),
         Err(error) => {
             assert_presentable(&error.to_string());

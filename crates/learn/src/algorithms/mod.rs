@@ -1,6 +1,6 @@
 //! The algorithms, one file each.
 //!
-//! An [`Algorithm`] is told what its constraints cost, moves its multipliers, and improves the
+//! An [`Algorithm`] is given what its constraints cost, moves its multipliers, and improves the
 //! policy on a minibatch. Gathering experience, advantages, targets and the optimiser are the same
 //! for all.
 

@@ -68,6 +68,6 @@ impl Signal {
     }
 }
 
-/// What each constraint costs, told from the mean costs per step of the experience at hand; empty
+/// What each constraint costs, taken from the mean costs per step of the experience at hand; empty
 /// while that is not known.
 pub type Signals<'a> = dyn Fn(&[f64]) -> Vec<Signal> + 'a;

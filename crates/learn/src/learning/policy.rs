@@ -134,7 +134,7 @@ impl Policy {
         self.rows.len() / self.shape.parameters()
     }
 
-    /// A sum over the parts of every row's distribution. Each part is told its row, its number
+    /// A sum over the parts of every row's distribution. Each part is given its row, its number
     /// among its kind, itself (log-probabilities, or a normal) and where it stands in the row, and
     /// writes its derivatives.
     fn sum_over_parts(

@@ -76,7 +76,7 @@ impl LearningNetwork for SharedNetwork {
             .flat_map(|number| (number as u32).to_le_bytes());
         let bytes = numbers.chain(outputs.iter().flat_map(|output| output.to_le_bytes())).collect();
         let mut rows = vec![0.0; batch.rows() * self.own.shape().outputs()];
-        // What cannot be exchanged is told by the team once the rollout is learned from.
+        // What cannot be exchanged is reported by the team once the rollout is learned from.
         let all = self.team.gather(bytes).unwrap_or_default();
         if !all.iter().all(|part| self.place(batch, part, &mut rows)) {
             self.team.break_off("a worker's outputs are not those of its lanes; start them all from one version of hasard");

@@ -282,7 +282,7 @@ impl<'a> ModelSequences<'a> {
         &self.sequences
     }
 
-    /// The trajectories of some lanes, told which lanes these are of the batch.
+    /// The trajectories of some lanes, given which lanes these are of the batch.
     #[must_use]
     pub fn of_lanes(&self, shape: &ModelShape, lanes: &[usize]) -> ModelSequences<'a> {
         let states = |(network, states): (&NetworkShape, &Vec<f32>)| {

@@ -283,7 +283,7 @@ impl<'a> Trainer<'a> {
             // What was stopped in the midst of its evaluation has no row yet: it is made when the
             // run goes on.
             cut_short = evaluates && evaluation.is_none();
-            // Asked once a rollout: from here on it is decided whether samplers are told to go on.
+            // Asked once a rollout: from here on it is decided whether samplers go on.
             over = self.session.frames >= self.session.config.frames
                 || cut_short
                 || hooks.stop.load(Ordering::Relaxed);

@@ -33,8 +33,8 @@ const NOT_IDENTITY: &[&str] = &[
     "learning.threads",
 ];
 
-/// Keys that are always told beside a result if they are not at their usual value. Of the others,
-/// such as the learning rate, only those are told that tell apart what would otherwise look the
+/// Keys that are always shown beside a result if they are not at their usual value. Of the others,
+/// such as the learning rate, only those are shown that distinguish what would otherwise look the
 /// same.
 pub const TOLD: [&str; 13] = [
     "rules",
@@ -243,7 +243,7 @@ impl Config {
         if cost_scale == own_scale || !scale_applies {
             options.remove("cost_scale");
         }
-        // What is left at its usual value need not be told, and older runs may lack the key.
+        // What is left at its usual value need not be shown, and older runs may lack the key.
         for (key, usual) in [
             ("hard", "false"),
             ("full_actions", "false"),

@@ -343,7 +343,7 @@ mod tests {
             value(&[35.0, 35.1], &[4.5], Kept::Surely),
         ];
         assert_eq!(bold(&values), [(false, false), (false, false), (true, false)]);
-        // Three seeds that scatter: 30 and 35 cannot be told apart.
+        // Three seeds that scatter: 30 and 35 are not different for sure.
         let values = [
             unsafe_one(),
             value(&[25.0, 30.0, 35.0], &[4.0], Kept::Surely),

@@ -45,7 +45,7 @@ struct Show<'a> {
     speed: f64,
     /// Moments of the episode that were passed, by their steps, in order.
     kept: Vec<(usize, Moment)>,
-    /// Steps that the viewer was told of.
+    /// Steps that the viewer knows.
     told: usize,
     told_over: bool,
     /// The moment has changed since it was drawn.

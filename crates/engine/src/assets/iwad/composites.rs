@@ -30,7 +30,7 @@ struct Definition<'a> {
 }
 
 /// Composes the textures that are wanted, in their order. One that asks for more than pictures laid
-/// over each other is left out and told of.
+/// over each other is left out, and a line says so.
 pub(super) fn load(
     set: &mut Assets,
     wad: &Wad<'_>,

@@ -56,7 +56,7 @@ fn draw_posts(posts: &[u8], pixels: &mut [u8], mask: &mut [u8]) -> Option<usize>
             return Some(at + 1);
         }
         let length = usize::from(*posts.get(at + 1)?);
-        // Rows beyond 254 are told by a step that does not go down: it then counts from the run
+        // Rows beyond 254 are marked by a step that does not go down: it then counts from the run
         // before.
         let top = match last_top {
             Some(last) if delta <= last => last + delta,

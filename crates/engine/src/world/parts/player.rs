@@ -51,7 +51,7 @@ pub struct Player {
     pub armor: i32,
     /// Ammunition: clip, shells, rockets, cells.
     pub ammo: [i32; 4],
-    /// Ammunition that left in the last tic: the status bar, which is told before shots are fired,
+    /// Ammunition that left in the last tic: the status bar, which is written before shots are fired,
     /// shows it still.
     pub just_spent: [i32; 4],
     /// Most ammunition of each type.

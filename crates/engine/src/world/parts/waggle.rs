@@ -72,7 +72,7 @@ impl Waggle {
         }
     }
 
-    /// Where the floor is; [`Waggle::advance`] told that it goes on.
+    /// Where the floor is; [`Waggle::advance`] returned that it goes on.
     #[inline]
     pub(crate) fn height(&self) -> Fixed {
         let swing = Angle::from_fine((self.accumulator >> 9) as i32).sin() * 8;

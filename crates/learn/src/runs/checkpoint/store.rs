@@ -141,7 +141,7 @@ impl Store {
         Ok(known)
     }
 
-    /// The newest whole checkpoint; `warn` is told of each damaged one that is passed over.
+    /// The newest whole checkpoint; `warn` gets a line for each damaged one that is passed over.
     pub fn newest(&self, warn: &mut dyn FnMut(String)) -> Result<Option<Loaded>, LearnError> {
         let all = self.all();
         for path in &all {
