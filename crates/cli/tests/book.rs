@@ -12,9 +12,8 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
 /// What makes a training take a quarter of a second.
-const SMALL: &str = "--envs 2 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
-                     --set episode_steps=8 --set sampling.spread_out=false --eval-every 64 --set evaluation.episodes=2 \
-                     --set evaluation.confirming_episodes=2 --size 64x48 --quiet";
+const SMALL: &str = "--threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 --eval-every 64 \
+                     --set episode_steps=8 --set sampling.spread_out=false --size 64x48 --quiet";
 
 /// Commands of other programs, and what tries them instead.
 const OTHERS: [(&str, &str); 8] = [
@@ -59,11 +58,17 @@ fn shortened(command: &str, number: usize) -> String {
         "train" => {
             let frames = if has("--curriculum") { 192 } else { 64 };
             let out = if has("--out") { String::new() } else { format!("--out runs/{number}") };
-            format!("--frames {frames} {out} {SMALL}")
+            // Of several tasks each has a world and an episode.
+            let tasks = words[1].split(',').count().max(2);
+            let each = ["evaluation.episodes", "evaluation.confirming_episodes"]
+                .map(|setting| format!("--set {setting}={tasks}"))
+                .join(" ");
+            format!("--frames {frames} {out} --envs {tasks} {each} {SMALL}")
         }
         // A whole episode as a film of 640x480 would take as long as all others together.
         "eval" if has("--worst") => "--episodes 1 -o worst.gif".into(),
-        "eval" | "rollout" | "claim" => "--episodes 2".into(),
+        "eval" => "--episodes 3".into(),
+        "rollout" | "claim" => "--episodes 2".into(),
         "record" => "--steps 3".into(),
         "bench" => "--threads 2 --seconds 0.1".into(),
         "highlights" => "--episodes 1 --seconds 1 --size 64x48".into(),
