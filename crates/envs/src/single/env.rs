@@ -1,4 +1,6 @@
 //! The single environment.
+//!
+//! Long because everything that can be asked of an environment is a method of one type.
 
 use crate::error::EnvError;
 use crate::interface::batch::{Episode, episode_costs};

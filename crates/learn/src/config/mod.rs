@@ -3,6 +3,7 @@
 
 mod aim;
 mod algorithm;
+mod budgets;
 mod change;
 pub mod constraint;
 pub mod curriculum;
@@ -22,6 +23,7 @@ mod reporting;
 mod sampling;
 mod second_order;
 pub mod settings;
+mod tasks;
 mod train_config;
 
 pub use algorithm::{AlgorithmConfig, AlgorithmKind, MultiplierUpdate};

@@ -5,6 +5,7 @@ use std::fmt;
 use hasard_engine::simd::{Family, Simd};
 use serde::{Deserialize, Serialize};
 
+use crate::config::budgets::{MOST_CONSTRAINTS, usual_constraints};
 use crate::config::change::Change;
 use crate::config::constraint::find_terms;
 use crate::config::curriculum::Lesson;
@@ -85,31 +86,6 @@ pub struct TrainConfig {
 /// Learning aims at the whole budget where a file does not say otherwise.
 fn whole() -> f64 {
     1.0
-}
-
-/// Most constraints of a run.
-const MOST_CONSTRAINTS: usize = 32;
-
-/// The budgets that an environment has of itself: one on its cost. Each of several tasks has its
-/// own, but for algorithms that know a single cost: there the smallest holds for all.
-fn usual_constraints(
-    algorithm: AlgorithmKind,
-    env: &EnvConfig,
-) -> Result<Vec<Constraint>, LearnError> {
-    let rules = env.rule_set()?;
-    let mut all: Vec<Constraint> = Vec::new();
-    for task in env.tasks() {
-        let budget = task.env_id()?.safety_budget(rules, env.hard);
-        let term = env.is_mixed().then_some(task.id);
-        if !all.iter().any(|known| known.term == term) {
-            all.push(Constraint { term, budget });
-        }
-    }
-    if env.is_mixed() && algorithm.knows_one_cost() {
-        let budget = all.iter().map(|one| one.budget).fold(f64::INFINITY, f64::min);
-        all = vec![Constraint { term: None, budget }];
-    }
-    Ok(all)
 }
 
 impl TrainConfig {
@@ -363,54 +339,6 @@ impl TrainConfig {
             return refuse("learning.value_phase_clone", clone, "a number from 0 to 1000000");
         }
         Ok(())
-    }
-
-    /// Refuses what several tasks cannot have.
-    fn check_tasks(&self) -> Result<(), LearnError> {
-        let tasks = self.env.tasks().len();
-        let refuse = |name: &str, given: &dyn fmt::Display, allowed: String| {
-            Err(LearnError::Config(format!(
-                "{name} cannot be {given} with {tasks} tasks; it must be {allowed}"
-            )))
-        };
-        for (name, given) in [
-            ("the number of worlds", self.sampling.lanes),
-            ("the episodes of an evaluation", self.evaluation.episodes),
-            ("the confirming episodes", self.confirming_episodes()),
-        ] {
-            if given < tasks {
-                return refuse(name, &given, format!("at least {tasks}"));
-            }
-        }
-        if self.constraint_statistic == ConstraintStatistic::StepMean {
-            let allowed = "episode-mean, which tells tasks apart".to_string();
-            return refuse("the constraint statistic", &self.constraint_statistic, allowed);
-        }
-        if !self.curriculum.is_empty() {
-            return refuse("a curriculum", &"set", "of the levels of one scenario".to_string());
-        }
-        Ok(())
-    }
-
-    /// How many worlds have each constraint: all, or those of the tasks whose episodes report its
-    /// term.
-    #[must_use]
-    pub fn lanes_under_constraints(&self) -> Vec<usize> {
-        let tasks = self.env.tasks();
-        let has = |task: &EnvConfig, term: &Option<String>| {
-            term.as_ref().is_none_or(|name| {
-                tasks.len() == 1
-                    || *name == task.id
-                    || task.scenario().is_none_or(|scenario| {
-                        scenario.cost_terms().iter().any(|term| term.name == name)
-                    })
-            })
-        };
-        let lanes = |constraint: &Constraint| {
-            let own: Vec<bool> = tasks.iter().map(|task| has(task, &constraint.term)).collect();
-            (0..self.sampling.lanes).filter(|lane| own[lane % own.len()]).count()
-        };
-        self.constraints.iter().map(lanes).collect()
     }
 
     /// Steps of the trajectories that are learned from.
