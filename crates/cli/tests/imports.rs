@@ -33,7 +33,7 @@ const HOUSES: &[House] = &[
     House {
         in_crate: "engine", folder: "render", without_circles: &["render"], imports: 400,
         order: &[
-            "blocks", "colour", "textures", "scene", "view", "buffers", "published_depth", "patch", "walls",
+            "blocks", "colour", "textures", "scene", "published_depth", "view", "buffers", "patch", "walls",
             "planes", "sprites", "overlay", "output", "automap", "scratch", "renderer",
         ],
     },

@@ -17,7 +17,7 @@ use crate::render::overlay::weapon;
 use crate::render::planes::shader::PlaneShader;
 use crate::render::planes::sky::{self, shader::SkyShader};
 use crate::render::planes::{draw, spans, whole};
-use crate::render::published_depth::quads;
+use crate::render::published_depth::PublishedDepth;
 use crate::render::scene::prepared::Scene;
 use crate::render::scratch::FrameScratch;
 use crate::render::sprites::pass::SpritePass;
@@ -48,6 +48,8 @@ pub struct Renderer {
     /// palette then, and their caches one copy.
     tinted: Box<Colours>,
     options: RenderOptions,
+    /// What writes depth as ViZDoom does, if it is to be written so.
+    published: Option<PublishedDepth>,
     simd: Simd,
 }
 
@@ -78,6 +80,7 @@ impl Renderer {
             tint: Tint::default(),
             tinted: Box::new(scene.colours.clone()),
             options: RenderOptions::default(),
+            published: None,
             // A wrong choice has been reported by what makes renderers for users.
             simd: Simd::chosen().unwrap_or(Simd::widest()),
             scene,
@@ -88,9 +91,10 @@ impl Renderer {
     /// Chooses what is drawn otherwise from the next frame on.
     pub fn set_options(&mut self, options: RenderOptions) {
         self.options = options;
-        let published = || DepthEncoding::published(self.view.base_rows(), self.view.is_reduced());
-        self.frame.depths =
-            if options.published_depth { published() } else { DepthEncoding::default() };
+        let published = || PublishedDepth::new(self.view.base_rows(), self.view.is_reduced());
+        self.published = options.published_depth.then(published);
+        let formulas = self.published.as_ref().map(PublishedDepth::formulas);
+        self.frame.depths = DepthEncoding::new(formulas);
     }
 
     /// Draws with these instructions, to compare them: the pixels are the same.
@@ -182,6 +186,7 @@ impl Renderer {
             entered: &mut space.entered,
             scratch: &mut space.walk,
             walls: &mut space.walls,
+            published: self.published.as_mut(),
             simd: self.simd,
         };
         walk.run::<D>();
@@ -221,7 +226,7 @@ impl Renderer {
             labels: &mut self.labels,
             trails: &mut space.trails,
             columns: &mut space.patch_columns,
-            midtexture_depth: &mut space.midtexture_depth,
+            published: self.published.as_mut(),
             simd: self.simd,
         };
         masked.draw::<D, C>(&space.sprites);
@@ -269,16 +274,14 @@ impl Renderer {
                 .slopes
                 .sky_rows(|horizon| sky::shader::texel_rows(&self.view, horizon, picture.height));
             sky::draw(&shader, self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
-            if D::WRITTEN && self.frame.depths.by_quads() {
-                let (first, shown, farthest) =
-                    (plane.first, plane.first..plane.end, self.frame.depths.farthest());
-                quads::draw_below(
-                    &mut space.columns,
-                    first,
-                    &plane.top[shown.clone()],
-                    &plane.bottom[shown],
-                    |_| farthest,
-                );
+            if D::WRITTEN
+                && let Some(published) = &self.published
+            {
+                let (shown, farthest) = (plane.first..plane.end, self.frame.depths.farthest());
+                let ends = [&plane.top[shown.clone()], &plane.bottom[shown]];
+                published.below(plane.first, ends, |x, row| {
+                    space.columns.put_depth(x, row, || farthest);
+                });
             }
         }
     }

@@ -12,7 +12,6 @@ use crate::render::buffers::sectors::SurfaceCache;
 use crate::render::buffers::visplane::{Span, VisPlanes};
 use crate::render::overlay::weapon_cache::WeaponCache;
 use crate::render::patch::data::PatchColumns;
-use crate::render::published_depth::midtexture::MidtextureDepth;
 use crate::render::scene::prepared::Scene;
 use crate::render::sprites::particles::Particles;
 use crate::render::sprites::sprite::Sprites;
@@ -50,7 +49,6 @@ pub struct FrameScratch {
     /// Columns of the sprite or weapon at hand.
     pub(super) patch_columns: PatchColumns,
     pub(super) weapons: WeaponCache,
-    pub(super) midtexture_depth: MidtextureDepth,
 }
 
 impl FrameScratch {

@@ -111,6 +111,13 @@ impl Columns {
     pub fn depth_of(&mut self, x: usize) -> &mut [u8] {
         &mut self.depth[x * self.stride..(x + 1) * self.stride]
     }
+
+    /// Writes the depth of a pixel, if the column has that row.
+    pub fn put_depth(&mut self, x: usize, row: usize, depth: impl FnOnce() -> u8) {
+        if let Some(written) = self.depth_of(x).get_mut(row) {
+            *written = depth();
+        }
+    }
 }
 
 impl Frame {
@@ -138,5 +145,21 @@ impl Frame {
         if D::WRITTEN {
             transpose::to_rows(simd, depth, *stride, &mut self.depth, self.width, rows);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_depth_of_a_row_past_the_last_one_is_not_written() {
+        let mut columns = Columns::default();
+        columns.fit(2, 40);
+        let rows = columns.depth_of(0).len();
+        columns.put_depth(0, rows - 1, || 7);
+        columns.put_depth(0, rows, || 9);
+        assert_eq!(columns.depth_of(0)[rows - 1], 7);
+        assert!(columns.depth_of(1).iter().all(|&depth| depth == 0));
     }
 }

@@ -5,14 +5,15 @@
 //! four that is drawn by itself leaves another one, for the quads to come: that of the column as
 //! far into the last four of the wall.
 
-use crate::render::published_depth::quads::QuadPieces;
+use super::quads::QuadPieces;
+use crate::render::textures::midtexture::posts_of;
 use std::ops::Range;
 
 /// What is written of the soot on a wall.
-#[derive(Debug, Default)]
-pub(crate) struct DecalDepth {
+#[derive(Clone, Debug, Default)]
+pub(super) struct DecalDepth {
     written: u8,
-    /// DepthEncoding that the columns of the wall's last four leave; none if there is no whole one.
+    /// Depths that the columns of the wall's last four leave; none if there is no whole one.
     last_quad: Option<[u8; 4]>,
     /// The first column of the four at hand.
     from: Option<usize>,
@@ -22,11 +23,18 @@ pub(crate) struct DecalDepth {
 impl DecalDepth {
     /// Begins a wall, of whose last column `written` was written.
     pub fn begin(&mut self, written: u8, last_quad: Option<[u8; 4]>) {
+        self.end();
         (self.written, self.last_quad) = (written, last_quad);
     }
 
+    /// Ends the mark at hand, if there is one, and begins one that covers the columns `covered`.
+    pub fn mark(&mut self, covered: Range<usize>) -> DecalMark<'_> {
+        self.end();
+        DecalMark { wall: self, covered }
+    }
+
     /// The depth of a column of a mark that covers the columns `mark`, which come in their order.
-    pub fn column(&mut self, x: usize, mark: &Range<usize>) -> u8 {
+    fn column(&mut self, x: usize, mark: &Range<usize>) -> u8 {
         let from = x - x % 4;
         let four = (mark.start <= from && from + 4 <= mark.end).then_some(from);
         if self.from != four {
@@ -37,20 +45,47 @@ impl DecalDepth {
     }
 
     /// Notes a run of rows of the column at hand.
-    pub fn add(&mut self, x: usize, rows: &Range<usize>) {
+    fn add(&mut self, x: usize, rows: &Range<usize>) {
         if self.from.is_some() && !rows.is_empty() {
             self.pieces.of(x % 4).push([rows.start as u16, rows.end as u16 - 1]);
         }
     }
 
     /// Ends a mark.
-    pub fn end(&mut self) {
+    fn end(&mut self) {
         if self.from.take().is_some() {
             let mut alone = None;
             self.pieces.draw(|column, _| alone = Some(column));
             self.pieces.clear();
             if let (Some(column), Some(last_quad)) = (alone, self.last_quad) {
                 self.written = last_quad[column];
+            }
+        }
+    }
+}
+
+/// A mark of soot on a wall.
+pub(crate) struct DecalMark<'a> {
+    wall: &'a mut DecalDepth,
+    covered: Range<usize>,
+}
+
+impl DecalMark<'_> {
+    /// Writes the depth of a column into `depth`, to the right of those before it: of which texels
+    /// it shows, and which rows a run of texels covers.
+    pub fn column(
+        &mut self,
+        x: usize,
+        depth: &mut [u8],
+        shown: impl Iterator<Item = bool>,
+        rows: impl Fn([u16; 2]) -> Range<usize>,
+    ) {
+        let written = self.wall.column(x, &self.covered);
+        for run in posts_of(shown) {
+            let rows = rows(run);
+            self.wall.add(x, &rows);
+            if !rows.is_empty() {
+                depth[rows].fill(written);
             }
         }
     }

@@ -5,13 +5,15 @@
 //! that the four have in common together, the others column by column. Of those others a piece that
 //! is a single row is written not its own depth but the last one written before the four.
 
-use crate::render::published_depth::quads::QuadPieces;
+use super::quads::QuadPieces;
 
 /// The four columns at hand, and what was written before them.
-#[derive(Debug, Default)]
-pub(crate) struct MidtextureDepth {
+#[derive(Clone, Debug, Default)]
+pub(super) struct MidtextureDepth {
     /// None at first: then single rows are written their own.
     last_written: Option<u8>,
+    /// Which of four that are drawn at once the column at hand is.
+    in_four: Option<usize>,
     pieces: QuadPieces,
     /// Start of the run of texels that the last piece of each column shows: pieces of two runs may
     /// touch.
@@ -30,13 +32,22 @@ impl MidtextureDepth {
         self.last_written = Some(depth);
     }
 
-    /// Begins another four.
-    pub fn begin(&mut self) {
-        self.pieces.clear();
+    /// Begins a column, and with the first one another four.
+    pub fn begin_column(&mut self, in_four: Option<usize>) {
+        self.in_four = in_four;
+        if in_four == Some(0) {
+            self.pieces.clear();
+        }
     }
 
-    /// Adds a row to a column of the four, below those that it has.
-    pub fn add(&mut self, column: usize, row: u16, run: u16, depth: u8) {
+    /// Whether the column at hand is drawn with three others at once.
+    pub fn is_in_four(&self) -> bool {
+        self.in_four.is_some()
+    }
+
+    /// Adds a row to the column at hand, if it is one of four, below those that it has.
+    pub fn add(&mut self, row: u16, run: u16, depth: u8) {
+        let Some(column) = self.in_four else { return };
         let pieces = self.pieces.of(column);
         match pieces.last_mut() {
             Some([_, last]) if *last + 1 == row && self.runs[column] == run => *last = row,
@@ -45,9 +56,12 @@ impl MidtextureDepth {
         (self.runs[column], self.depths[column]) = (run, depth);
     }
 
-    /// Ends the four: gives column, row and depth of the rows that are written another one than
-    /// their own to `put`.
-    pub fn end(&mut self, mut put: impl FnMut(usize, u16, u8)) {
+    /// Ends the column at hand, and with the last one the four: gives column, row and depth of the
+    /// rows that are written another one than their own to `put`.
+    pub fn end_column(&mut self, mut put: impl FnMut(usize, u16, u8)) {
+        if self.in_four != Some(3) {
+            return;
+        }
         let written = self.last_written;
         let last_column = self.pieces.draw(|column, [first, last]| {
             if let Some(written) = written.filter(|_| first == last) {
@@ -70,15 +84,14 @@ mod tests {
     fn written(columns: [&[Piece]; 4]) -> (Vec<(usize, u16)>, Option<u8>) {
         let mut midtextures = MidtextureDepth::default();
         midtextures.note(7);
-        midtextures.begin();
         for (column, pieces) in columns.iter().enumerate() {
+            midtextures.begin_column(Some(column));
             for (run, &[first, last]) in pieces.iter().enumerate() {
-                (first..=last)
-                    .for_each(|row| midtextures.add(column, row, run as u16, 10 + column as u8));
+                (first..=last).for_each(|row| midtextures.add(row, run as u16, 10 + column as u8));
             }
         }
         let mut list = Vec::new();
-        midtextures.end(|column, row, depth| {
+        midtextures.end_column(|column, row, depth| {
             assert_eq!(depth, 7);
             list.push((column, row));
         });

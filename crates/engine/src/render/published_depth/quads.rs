@@ -2,17 +2,14 @@
 //! it, as far as they share rows. What its depth has of that shows with `published_depth`
 //! (`docs/results/pixels.md`).
 
-use crate::render::buffers::frame::Columns;
-
-/// Draws the depth that a wall or the sky has besides its own rows: a row more below those that
-/// four columns share. What is drawn later hides it. The columns from `first` on show it between
-/// `tops` and `bottoms`.
-pub(crate) fn draw_below(
-    columns: &mut Columns,
+/// Finds where a wall or the sky has depth besides its own rows: a row more below those that four
+/// columns share, which may be past a column's last. What is drawn later hides it. The columns from
+/// `first` on show it between `tops` and `bottoms`.
+pub(super) fn below(
     first: usize,
     tops: &[i16],
     bottoms: &[i16],
-    depth: impl Fn(usize) -> u8,
+    mut put: impl FnMut(usize, usize),
 ) {
     for from in (first.next_multiple_of(4)..first + tops.len()).step_by(4) {
         let (Some(tops), Some(bottoms)) =
@@ -23,21 +20,17 @@ pub(crate) fn draw_below(
         let end = bottoms.iter().min().copied().unwrap_or(0);
         let all_shown = tops.iter().zip(bottoms).all(|(top, bottom)| top < bottom);
         if all_shown && tops.iter().all(|&top| top < end) {
-            for x in from..from + 4 {
-                if let Some(written) = columns.depth_of(x).get_mut(end as usize) {
-                    *written = depth(x);
-                }
-            }
+            (from..from + 4).for_each(|x| put(x, end as usize));
         }
     }
 }
 
 /// First and last row of a part of a column without holes.
-pub(crate) type Piece = [u16; 2];
+pub(super) type Piece = [u16; 2];
 
 /// The parts of four columns, from the upper to the lower.
-#[derive(Debug, Default)]
-pub(crate) struct QuadPieces([Vec<Piece>; 4]);
+#[derive(Clone, Debug, Default)]
+pub(super) struct QuadPieces([Vec<Piece>; 4]);
 
 impl QuadPieces {
     /// Empties them.
@@ -98,29 +91,18 @@ mod tests {
     use super::*;
 
     /// Which columns get a depth in which row, of columns from `first` on.
-    fn below(first: usize, tops: &[i16], bottoms: &[i16]) -> Vec<(usize, usize)> {
-        let mut columns = Columns::default();
-        columns.fit(24, 40);
-        draw_below(&mut columns, first, tops, bottoms, |x| x as u8 + 1);
-        let written = |x: usize| {
-            columns
-                .clone()
-                .depth_of(x)
-                .iter()
-                .position(|&depth| depth == x as u8 + 1)
-                .map(|row| (x, row))
-        };
-        (0..24).filter_map(written).collect()
+    fn listed(first: usize, tops: &[i16], bottoms: &[i16]) -> Vec<(usize, usize)> {
+        let mut list = Vec::new();
+        below(first, tops, bottoms, |x, row| list.push((x, row)));
+        list
     }
 
     #[test]
     fn a_row_below_what_four_columns_share_is_told() {
         // Columns 4 to 7 are the only whole four.
-        assert_eq!(below(2, &[0; 7], &[9, 9, 9, 8, 10, 9, 9]), [(4, 8), (5, 8), (6, 8), (7, 8)]);
+        assert_eq!(listed(2, &[0; 7], &[9, 9, 9, 8, 10, 9, 9]), [(4, 8), (5, 8), (6, 8), (7, 8)]);
         // One that shows nothing, and one that ends where another begins: they share nothing.
-        assert_eq!(below(4, &[0, 3, 0, 0], &[5, 3, 5, 5]), []);
-        assert_eq!(below(4, &[0, 5, 0, 0], &[5, 9, 5, 5]), []);
-        // There is no row below the last one.
-        assert_eq!(below(4, &[0; 4], &[64; 4]), []);
+        assert_eq!(listed(4, &[0, 3, 0, 0], &[5, 3, 5, 5]), []);
+        assert_eq!(listed(4, &[0, 5, 0, 0], &[5, 9, 5, 5]), []);
     }
 }

@@ -27,9 +27,6 @@ struct SeenTexture<'a> {
     along: TextureLine,
     light: Light,
     scales: PostScale,
-    /// The base columns that ViZDoom draws four at once; the depth of the others it writes as a
-    /// sprite's.
-    fours: Range<u32>,
 }
 
 /// A column of it.
@@ -37,8 +34,6 @@ struct Place {
     /// Frame column.
     x: usize,
     rows: Range<usize>,
-    /// Which of four that are drawn at once it is.
-    in_four: Option<usize>,
 }
 
 impl SpritePass<'_> {
@@ -50,14 +45,16 @@ impl SpritePass<'_> {
         first: usize,
         end: usize,
     ) {
-        let Some(seen) = self.seen_texture(drawseg, first, end) else { return };
-        let by_quads = D::WRITTEN && self.frame.depths.by_quads();
+        let Some(seen) = self.seen_texture(drawseg) else { return };
         for x in first..end {
             let row_index = drawseg.rows + x - drawseg.first;
             let drawn = std::mem::replace(&mut self.drawsegs.drawn[row_index], true);
-            let in_four = if D::WRITTEN { self.in_four(&seen, x) } else { None };
-            if by_quads && in_four == Some(0) {
-                self.midtexture_depth.begin();
+            if D::WRITTEN
+                && let Some(published) = &mut self.published
+            {
+                let [from, to, column] = [first, end - 1, x].map(|x| self.view.columns[x]);
+                let bottoms = &self.drawsegs.bottoms;
+                published.begin_midtexture_column([from, to], column, bottoms, row_index);
             }
             let open =
                 [self.drawsegs.tops[row_index], self.drawsegs.bottoms[row_index]].map(i32::from);
@@ -66,24 +63,18 @@ impl SpritePass<'_> {
             let rows = top.max(open[0])..bottom.min(open[1]);
             if !drawn && !rows.is_empty() {
                 let rows = rows.start as usize..rows.end as usize;
-                self.texture_column::<D, C>(&seen, Place { x, rows, in_four });
+                self.texture_column::<D, C>(&seen, Place { x, rows });
             }
-            if by_quads && in_four == Some(3) {
-                let Frame { width, depth, .. } = &mut *self.frame;
-                self.midtexture_depth.end(|column, row, written| {
-                    depth[usize::from(row) * *width + x - 3 + column] = written
-                });
+            if D::WRITTEN
+                && let Some(published) = &mut self.published
+            {
+                published.end_midtexture_column(x, self.frame.width, &mut self.frame.depth);
             }
         }
     }
 
-    /// What the columns `first..end` have in common, if there is a texture.
-    fn seen_texture<'s>(
-        &self,
-        drawseg: &'s DrawSeg,
-        first: usize,
-        end: usize,
-    ) -> Option<SeenTexture<'s>>
+    /// What its columns have in common, if there is a texture.
+    fn seen_texture<'s>(&self, drawseg: &'s DrawSeg) -> Option<SeenTexture<'s>>
     where
         Self: 's,
     {
@@ -109,26 +100,12 @@ impl SpritePass<'_> {
             along: ViewLine::of_sidedef(camera, face).texture(view, face, drawseg.base_ends),
             light: Light::new(camera, i32::from(front.light) + face.contrast),
             scales: PostScale::new(view, &drawseg.line, drawseg.base_ends),
-            fours: (view.columns[first] + 3) & !3..(view.columns[end - 1] + 1) & !3,
         })
-    }
-
-    /// Which of four columns that are drawn at once a frame column is.
-    fn in_four(&self, seen: &SeenTexture, x: usize) -> Option<usize> {
-        let column = self.view.columns[x];
-        let place = (column & 3) as usize;
-        // Nor are they drawn at once where nearer walls without an opening hide one of them.
-        let is_whole = || {
-            let four = seen.drawseg.rows + x - seen.drawseg.first - place;
-            self.drawsegs.bottoms[four..four + 4].iter().all(|&bottom| bottom > 0)
-        };
-        (seen.fours.contains(&column) && (!self.frame.depths.by_quads() || is_whole()))
-            .then_some(place)
     }
 
     #[inline]
     fn texture_column<D: DepthBuffer, C: ClassBuffer>(&mut self, seen: &SeenTexture, place: Place) {
-        let Place { x, rows, in_four } = place;
+        let Place { x, rows } = place;
         let (drawseg, fence, base_column) =
             (seen.drawseg, seen.fence, i64::from(self.view.columns[x]));
         let distance = drawseg.line.distance_at(base_column);
@@ -154,29 +131,20 @@ impl SpritePass<'_> {
             },
         };
         let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
-        let written = match in_four {
-            Some(_) => depths.wall(distance, fence.picture.height),
-            None => depths.sprite(distance, self.view.focal_y),
+        let (height, focal_y) = (fence.picture.height, self.view.focal_y);
+        let mut published = self.published.as_deref_mut().filter(|_| D::WRITTEN);
+        let written = match &mut published {
+            Some(published) => published.midtexture(distance, height, focal_y),
+            None => depths.wall(distance, height),
         };
-        if D::WRITTEN && in_four.is_none() {
-            self.midtexture_depth.note(written);
-        }
         midcolumn::draw(&shown, self.simd, &self.view.rows, rows, |row, lit| {
             let pixel = row * *width + x;
             colour[pixel] = lit;
             if D::WRITTEN {
                 depth[pixel] = written;
             }
-            if D::WRITTEN
-                && depths.by_quads()
-                && let Some(column) = in_four
-            {
-                self.midtexture_depth.add(
-                    column,
-                    row as u16,
-                    shown.run_at(self.view.rows[row]),
-                    written,
-                );
+            if let Some(published) = &mut published {
+                published.midtexture_row(row, written, || shown.run_at(self.view.rows[row]));
             }
             if C::WRITTEN {
                 classes[pixel] = class::WALL;

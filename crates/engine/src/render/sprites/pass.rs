@@ -6,7 +6,7 @@ use crate::render::buffers::labels::{Label, Labels};
 use crate::render::buffers::written::{ClassBuffer, DepthBuffer};
 use crate::render::patch;
 use crate::render::patch::data::{DrawnBounds, PatchColumns};
-use crate::render::published_depth::midtexture::MidtextureDepth;
+use crate::render::published_depth::PublishedDepth;
 use crate::render::scene::prepared::Scene;
 use crate::render::sprites::particles::Particles;
 use crate::render::sprites::sprite::{Extent, Sprites, VisSprite};
@@ -29,14 +29,17 @@ pub(crate) struct SpritePass<'a> {
     pub trails: &'a mut Particles,
     /// Scratch: the columns of the sprite at hand.
     pub columns: &'a mut PatchColumns,
-    pub midtexture_depth: &'a mut MidtextureDepth,
+    /// If depth is written as ViZDoom writes it.
+    pub published: Option<&'a mut PublishedDepth>,
     pub simd: Simd,
 }
 
 impl SpritePass<'_> {
     /// Draws sprites with the squares of trails and the masked textures between them.
     pub fn draw<D: DepthBuffer, C: ClassBuffer>(&mut self, sprites: &Sprites) {
-        self.midtexture_depth.reset();
+        if let Some(published) = &mut self.published {
+            published.begin_masked();
+        }
         self.find_hidden_trails();
         for sprite in sprites.far_to_near() {
             self.squares_beyond::<D, C>(sprite.distance);
@@ -106,7 +109,9 @@ impl SpritePass<'_> {
         self.occlude::<D, C>(&sprite.extent);
         let label = self.labels.next_class();
         let depth = self.frame.depths.sprite(sprite.distance, self.view.focal_y);
-        self.midtexture_depth.note(depth);
+        if let Some(published) = &mut self.published {
+            published.note(depth);
+        }
         let stamp = sprite.stamp(self.scene, picture, self.columns, depth, label);
         let covered = patch::draw::<D, C>(&stamp, self.simd, self.frame, &self.view.rows);
         if C::WRITTEN && covered != DrawnBounds::NOTHING {

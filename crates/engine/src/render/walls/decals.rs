@@ -7,7 +7,6 @@ use crate::render::buffers::written::DepthBuffer;
 use crate::render::colour::blend::WHOLE;
 use crate::render::patch::data::first_row;
 use crate::render::scene::prepared::Sidedef;
-use crate::render::textures::midtexture::posts_of;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::INVERSE_BITS;
 use crate::render::walls::pass::SeenSeg;
@@ -33,24 +32,18 @@ impl WallPass<'_> {
         self.draw_walls::<D>();
         self.list_decal_columns(seen, light);
         let columns = std::mem::take(&mut self.scratch.decal_columns);
-        if D::WRITTEN && self.depths.by_quads() {
-            self.begin_depth(seen, &columns);
+        if D::WRITTEN
+            && let Some(published) = &mut self.published
+            && let Some(last) = columns.last()
+        {
+            let written = self.columns.depth_of(last.x)[last.rows[0]];
+            let distance = |x: usize| seen.line.distance_at(i64::from(self.view.columns[x]));
+            published.begin_decals(written, seen.first..seen.end, distance);
         }
         for mark in marks {
             self.stain::<D>(&columns, seen.face, stain, mark);
         }
         self.scratch.decal_columns = columns;
-    }
-
-    /// What the depth of soot follows from that ViZDoom writes.
-    fn begin_depth(&mut self, seen: &SeenSeg<'_>, columns: &[DecalColumn]) {
-        let Some(last) = columns.last() else { return };
-        let written = self.columns.depth_of(last.x)[last.rows[0]];
-        let from = seen.end / 4 * 4;
-        let distance = |x: usize| seen.line.distance_at(i64::from(self.view.columns[x]));
-        let depth = |column: usize| self.depths.stain_of_quad(distance(from - 4 + column));
-        let last_quad = (from >= seen.first + 4).then(|| [0, 1, 2, 3].map(depth));
-        self.scratch.decal_depth.begin(written, last_quad);
     }
 
     /// What all marks of a wall need of its columns: a wall may bear dozens, most of which touch
@@ -96,9 +89,10 @@ impl WallPass<'_> {
         let count = columns[first..]
             .partition_point(|column| texel_column(column) < i64::from(stain.width));
         let columns = &columns[first..first + count];
-        let by_quads = D::WRITTEN && self.depths.by_quads();
         let covered = columns.first().map_or(0, |column| column.x)
             ..columns.last().map_or(0, |column| column.x + 1);
+        let published = self.published.as_deref_mut().filter(|_| D::WRITTEN);
+        let mut decal = published.and_then(|published| published.decal(covered));
         for column in columns {
             let Some(texels) = stain.column(texel_column(column), mark.mirrored) else { continue };
             // By the lower edges of rows as all things are, but upside down by the upper ones.
@@ -109,19 +103,16 @@ impl WallPass<'_> {
             let frame_row =
                 |texel: usize| first_row(self.view, texel as u32, at, column.step.max(1)) as usize;
             let (first, end) = (frame_row(0).max(top), frame_row(texels.len()).min(bottom));
-            if by_quads {
-                let written = self.scratch.decal_depth.column(column.x, &covered);
+            if let Some(decal) = &mut decal {
                 let shown = |row: usize| {
                     texels[if mark.upturned { texels.len() - 1 - row } else { row }] > 0
                 };
-                for run in posts_of((0..texels.len()).map(shown)) {
+                let rows = |run: [u16; 2]| {
                     let [start, end] = run.map(|texel| frame_row(texel.into()));
-                    let rows = start.max(top)..end.min(bottom);
-                    self.scratch.decal_depth.add(column.x, &rows);
-                    if !rows.is_empty() {
-                        self.columns.depth_of(column.x)[rows].fill(written);
-                    }
-                }
+                    start.max(top)..end.min(bottom)
+                };
+                let depth = self.columns.depth_of(column.x);
+                decal.column(column.x, depth, (0..texels.len()).map(shown), rows);
             }
             if first >= end {
                 continue;
@@ -137,7 +128,7 @@ impl WallPass<'_> {
             for (pixel, &row) in self.columns.colour_of(column.x)[first..end].iter_mut().zip(rows) {
                 *pixel = self.scene.blend.darkened(*pixel, hidden(row));
             }
-            if D::WRITTEN && !by_quads {
+            if D::WRITTEN && decal.is_none() {
                 let pixels = self.columns.depth_of(column.x)[first..end].iter_mut();
                 pixels
                     .zip(rows)
@@ -145,7 +136,6 @@ impl WallPass<'_> {
                     .for_each(|(pixel, _)| *pixel = column.depth);
             }
         }
-        self.scratch.decal_depth.end();
     }
 }
 

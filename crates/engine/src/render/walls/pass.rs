@@ -6,7 +6,7 @@ use crate::render::buffers::drawsegs::list::DrawSegs;
 use crate::render::buffers::frame::Columns;
 use crate::render::buffers::sectors::SurfaceCache;
 use crate::render::buffers::visplane::VisPlanes;
-use crate::render::published_depth::decal::DecalDepth;
+use crate::render::published_depth::PublishedDepth;
 use crate::render::scene::prepared::{Scene, SceneSeg, Sidedef};
 use crate::render::view::camera::Camera;
 use crate::render::view::depth::DepthEncoding;
@@ -36,6 +36,8 @@ pub(crate) struct WallPass<'a> {
     pub scratch: &'a mut WallScratch,
     /// Columns of walls that wait to be drawn.
     pub walls: &'a mut WallBatch,
+    /// If depth is written as ViZDoom writes it.
+    pub published: Option<&'a mut PublishedDepth>,
     pub simd: Simd,
 }
 
@@ -52,7 +54,6 @@ pub(crate) struct WallScratch {
     pub lower: Vec<i16>,
     /// Its columns, where it bears soot.
     pub decal_columns: Vec<DecalColumn>,
-    pub decal_depth: DecalDepth,
 }
 
 impl WallScratch {

@@ -8,7 +8,7 @@ use crate::render::buffers::drawsegs::list::DrawSeg;
 use crate::render::buffers::sectors::SectorSurfaces;
 use crate::render::buffers::visplane::VisPlaneKey;
 use crate::render::buffers::written::DepthBuffer;
-use crate::render::published_depth::quads;
+use crate::render::published_depth::PublishedDepth;
 use crate::render::scene::prepared::{NO_SECTOR, SceneSeg};
 use crate::render::view::light::Light;
 use crate::render::view::line::{END_BITS, Edge};
@@ -327,20 +327,15 @@ impl WallPass<'_> {
                 &bottoms[..end - first],
             );
         }
-        if D::WRITTEN && self.depths.by_quads() {
-            let depth = |x: usize| {
-                shader.depths.wall(
-                    seen.line.distance_at(i64::from(self.view.columns[x])),
-                    shader.picture.height,
-                )
-            };
-            quads::draw_below(
-                self.columns,
-                first,
-                &tops[..end - first],
-                &bottoms[..end - first],
-                depth,
-            );
+        if D::WRITTEN
+            && let Some(published) = &self.published
+        {
+            let ends = [&tops[..end - first], &bottoms[..end - first]];
+            published.below(first, ends, |x, row| {
+                let distance = || seen.line.distance_at(i64::from(self.view.columns[x]));
+                let depth = || shader.depths.wall(distance(), shader.picture.height);
+                self.columns.put_depth(x, row, depth);
+            });
         }
         if !self.world.soot.is_empty() {
             self.soot::<D>(seen, light);
@@ -349,7 +344,8 @@ impl WallPass<'_> {
 
     /// Whether columns of walls are listed and drawn together.
     fn batches_walls(&self) -> bool {
-        batch::is_used(self.simd) && self.columns.are_blocks() && !self.depths.by_quads()
+        let may_wait = self.published.as_deref().is_none_or(PublishedDepth::lets_walls_wait);
+        batch::is_used(self.simd) && self.columns.are_blocks() && may_wait
     }
 
     /// Draws the walls that wait for it.
