@@ -104,7 +104,7 @@ fn several_tasks_make_a_batch() {
     folder.ok("new garden");
     let line = folder.ok("bench RemedyRushLevel1,garden.toml --envs 4 --seconds 0.1 --size 64x48");
     assert!(line.starts_with("RemedyRushLevel1-v0,Garden-v0: "), "{line}");
-    for line in ["rollout", "train", "render"] {
+    for line in ["rollout", "render"] {
         let error = folder.refused(&format!("{line} RemedyRushLevel1,garden.toml"));
         assert!(error.contains("it must be one id"), "{line}: {error}");
     }
