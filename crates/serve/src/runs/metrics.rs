@@ -30,6 +30,7 @@ const GROUPS: [(&str, &[&str]); 10] = [
         &[
             "multiplier*",
             "budget*",
+            "aimed_budget*",
             "violation_total*",
             "cost_total",
             "constraint_costs*",
@@ -61,6 +62,10 @@ const GROUPS: [(&str, &[&str]); 10] = [
             "value_loss",
             "cost_value_loss*",
             "value",
+            "value_phase_loss",
+            "value_phase_divergence",
+            "auxiliary_depth_loss",
+            "auxiliary_labels_loss",
         ],
     ),
     (
