@@ -8,7 +8,7 @@ from typing_extensions import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "check_scenario", "describe", "event_names", "follow", "frame_size", "ids", "main", "read_scenario", "register_scenario", "train"]
+__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "check_scenario", "describe", "event_names", "follow", "frame_size", "ids", "main", "published_stats", "read_scenario", "register_scenario", "train"]
 
 __version__: str
 
