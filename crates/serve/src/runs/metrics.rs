@@ -64,6 +64,7 @@ const GROUPS: [(&str, &[&str]); 10] = [
             "value",
             "value_phase_loss",
             "value_phase_divergence",
+            "value_phase_epochs",
             "auxiliary_depth_loss",
             "auxiliary_labels_loss",
         ],
