@@ -4,6 +4,7 @@ use crate::failure::{Failure, Outcome};
 use hasard_envs::{EnvOptions, Episode};
 use hasard_learn::config::Constraint;
 use hasard_learn::runs::evaluate::{Evaluation, Judgement, TaskEvaluation};
+use hasard_learn::runs::run_directory::episode_row;
 use hasard_learn::statistics::{Estimate, Tails};
 use serde_json::{Map, Value, json};
 use std::io::Write;
@@ -37,7 +38,7 @@ impl EpisodeLines {
     pub fn episode(&mut self, env: &str, number: u64, episode: Episode) -> Outcome {
         let mut out = std::io::stdout().lock();
         if self.json {
-            let mut row = episode_row(episode.task.unwrap_or(env), number, &episode);
+            let mut row = episode_row(env, number, &episode);
             if let Some((rules, hard)) = self.rules {
                 row["rules"] = json!(rules);
                 row["hard"] = json!(hard);
@@ -178,23 +179,6 @@ fn tails_text(tails: &Tails, budget: Option<f64>) -> String {
         "median {:.2}, 90 % at most {:.2}, worst {:.2}, mean of the worst tenth {:.2}{over}",
         tails.median, tails.ninety, tails.worst, tails.cvar
     )
-}
-
-/// An episode as JSON.
-pub fn episode_row(env: &str, number: u64, episode: &Episode) -> Value {
-    json!({
-        "env": env,
-        "episode": number,
-        "seed": episode.seed,
-        "return": episode.episode_return,
-        "cost": episode.cost,
-        "costs": named(episode.costs.iter().map(|one| (one.name, one.cost))),
-        "uncounted": episode.costs.iter().filter(|one| !one.counted).map(|one| one.name).collect::<Vec<_>>(),
-        "length": episode.length,
-        "terminated": episode.terminated,
-        "truncated": episode.truncated,
-        "stats": named(episode.stats.iter().copied()),
-    })
 }
 
 /// Means of episodes and their 95 % confidence half-widths as JSON.

@@ -32,6 +32,7 @@ use hasard_envs::EnvOptions;
 use hasard_learn::config::EnvConfig;
 use hasard_learn::runs::agent::{Choice, TrainedPolicy};
 use hasard_learn::runs::evaluate::{Evaluation, play};
+use hasard_learn::runs::run_directory::episode_row;
 use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Summary};
 use hasard_learn::team::Team;
@@ -162,8 +163,7 @@ pub fn evaluate(
         for episode in
             play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))?
         {
-            let id = episode.task.unwrap_or(&config.env.id);
-            rows.push(episode_lines::episode_row(id, all.len() as u64, &episode));
+            rows.push(episode_row(&config.env.id, all.len() as u64, &episode));
             all.push(episode);
         }
     }

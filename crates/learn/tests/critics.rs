@@ -6,7 +6,6 @@ use hasard_learn::config::{AlgorithmKind, CriticInput, ReturnNormaliser, TrainCo
 use hasard_learn::runs::session::{Beginning, Session};
 use hasard_learn::runs::trainer::Start;
 use std::fs;
-use std::path::Path;
 
 /// CPO on rollouts of 24 steps in trajectories of 8, with three steps of the critics on a quarter
 /// of the trajectories each. Episodes have ten steps, so that trajectories begin in the middle of
@@ -187,15 +186,6 @@ fn critics_make_their_steps() {
     assert_eq!(steps, [0, 3, 3]);
 }
 
-fn weights(run: &Path) -> Vec<u8> {
-    let all = fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
-    let last = all
-        .filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with("frames_"))
-        .max()
-        .unwrap();
-    fs::read(last.join("weights.safetensors")).unwrap()
-}
-
 /// Cut rollouts, dealt critics' steps, privileged inputs and moments that forget: a run that
 /// stopped and went on, with other samplers at that, equals the one that went straight through.
 #[test]
@@ -231,7 +221,7 @@ fn runs_resume_exactly_with_each_of_it() {
         .unwrap();
         let settings = vec![format!("frames={}", config.frames), "sampling.samplers=3".into()];
         tiny::run(Start::Resume { settings }, &broken).0.unwrap();
-        assert!(weights(&straight) == weights(&broken), "{name}: weights differ");
+        assert!(tiny::weights(&straight) == tiny::weights(&broken), "{name}: weights differ");
         fs::remove_dir_all(straight).unwrap();
         fs::remove_dir_all(broken).unwrap();
     }

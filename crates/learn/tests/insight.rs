@@ -38,12 +38,7 @@ fn go(start: Start<'_>, path: &Path) -> Vec<u8> {
     let mut warn = |warning: String| panic!("{warning}");
     let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut warn };
     train(start, path, &worlds, &mut hooks).unwrap();
-    let all = fs::read_dir(path.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
-    let last = all
-        .filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with("frames_"))
-        .max()
-        .unwrap();
-    fs::read(last.join("weights.safetensors")).unwrap()
+    tiny::weights(path)
 }
 
 /// A run that stopped in the midst of episodes and went on equals the one that did not, and neither

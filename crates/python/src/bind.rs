@@ -36,7 +36,7 @@ pub fn cut(facts: &Facts, given: &Given<'_, '_>) -> PyResult<(Vec<Memories>, Vec
     bound::<bool>("terminated", given.terminated, &[lanes])?;
     bound::<bool>("truncated", given.truncated, &[lanes])?;
     given.cost_terms.map(|array| bound::<f32>("cost_terms", array, &[lanes, terms])).transpose()?;
-    let (mut arrays, mut lent) = (Vec::new(), Vec::new());
+    let (mut arrays, mut memories) = (Vec::new(), Vec::new());
     for slot in 0..=facts.groups {
         let own = facts.lanes_of(slot);
         let count = own.len();
@@ -45,7 +45,7 @@ pub fn cut(facts: &Facts, given: &Given<'_, '_>) -> PyResult<(Vec<Memories>, Vec
             (cut(given.observations)?, cut(given.rewards)?, cut(given.costs)?);
         let (terminated, truncated) = (cut(given.terminated)?, cut(given.truncated)?);
         let cost_terms = given.cost_terms.map(cut).transpose()?;
-        lent.push(Memories {
+        memories.push(Memories {
             observations: bound("observations", &observations, &[count, height, width, channels])?,
             rewards: bound("rewards", &rewards, &[count])?,
             costs: bound("costs", &costs, &[count])?,
@@ -65,19 +65,20 @@ pub fn cut(facts: &Facts, given: &Given<'_, '_>) -> PyResult<(Vec<Memories>, Vec
             truncated: Some(truncated.unbind()),
         });
     }
-    Ok((lent, arrays))
+    Ok((memories, arrays))
 }
 
 /// Lets batches write to the memory from now on; those that did before.
 pub fn lend(
     facts: &Facts,
     inner: &mut Inner,
-    lent: Vec<Memories>,
+    memories: Vec<Memories>,
 ) -> Result<Vec<Option<hasard_envs::Batch>>, Fault> {
     idle(inner)?;
-    let slots = lent.into_iter().enumerate();
-    let batches = slots
-        .map(|(slot, lent)| Some(lent.batch(inner.worlds().batch_of(facts.lanes_of(slot).len()))));
+    let slots = memories.into_iter().enumerate();
+    let batches = slots.map(|(slot, memory)| {
+        Some(memory.batch(inner.worlds().batch_of(facts.lanes_of(slot).len())))
+    });
     let batches: Vec<_> = batches.collect();
     Ok(std::mem::replace(&mut inner.bound, batches))
 }

@@ -539,8 +539,8 @@ impl Worlds {
     ) -> PyResult<()> {
         let given =
             crate::bind::Given { observations, rewards, costs, terminated, truncated, cost_terms };
-        let (lent, arrays) = crate::bind::cut(&self.facts, &given)?;
-        drop(self.with(py, |inner| crate::bind::lend(&self.facts, inner, lent))?);
+        let (memories, arrays) = crate::bind::cut(&self.facts, &given)?;
+        drop(self.with(py, |inner| crate::bind::lend(&self.facts, inner, memories))?);
         let mut bound = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let replaced = std::mem::replace(&mut *bound, arrays);
         drop(bound);

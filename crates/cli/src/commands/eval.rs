@@ -51,9 +51,11 @@ pub fn run(args: &EvalArgs) -> Outcome {
         which: if args.latest { Which::Latest } else { Which::Selected },
         choice: if args.greedy { Choice::Greedy } else { Choice::Sampled },
     };
+    let env =
+        Env::new(&crate::settings::first_task(&config.env), &options).map_err(Failure::bad)?;
     let mut traces = Vec::new();
     if args.calibration.is_some() {
-        let policy = player.policy(&first_env(&config, &options)?)?;
+        let policy = player.policy(&env)?;
         if policy.cost_units().is_empty() {
             return Err(Failure::bad(format!(
                 "--calibration: {}: has no critics of costs whose units are known and that see no more than an agent at work; give \
@@ -63,7 +65,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
         }
     }
     let make = |_: &_, worlds| config.env.worlds(&options, worlds);
-    let (env, numbers) = (first_env(&config, &options)?, (args.episodes, args.seed));
+    let numbers = (args.episodes, args.seed);
     player.play_traced(&env, &make, &config.env.id, numbers, &mut lines, &mut |trace| {
         if args.calibration.is_some() {
             traces.push(trace);
@@ -208,11 +210,6 @@ fn print_calibration(all: &Value) -> Outcome {
         }
     }
     Ok(())
-}
-
-/// A world of the task, or of the first of several.
-fn first_env(config: &TrainConfig, options: &EnvOptions) -> Result<Env, Failure> {
-    Env::new(&crate::settings::first_task(&config.env), options).map_err(Failure::bad)
 }
 
 /// Which agent acts, and how.

@@ -7,6 +7,7 @@ use crate::registry::facts;
 use crate::registry::scenario::EnvId;
 use crate::scenarios::common::rules::AnyRules;
 use crate::scenarios::common::spec::{Setting, misplaced};
+use crate::single::lookout::Ends;
 use crate::single::simulation::Game;
 use crate::spaces::action::ActionSpace;
 use hasard_engine::assets::Assets;
@@ -32,6 +33,8 @@ pub(crate) struct Blueprint {
     pub template: Game,
     pub scene: Arc<Scene>,
     pub view: Arc<View>,
+    /// The map's ends.
+    pub ends: Ends,
 }
 
 /// Whether a world has somebody to play: else the line that names the map and the remedy.
@@ -74,6 +77,7 @@ impl Blueprint {
         world.rockets_shed = id.scenario.rockets_shed && as_published;
         has_start(&world)?;
         rules.prepare(&mut world);
+        let ends = Ends::of(&world);
         let (start_tic, end_tic) = facts::clock(id, options.rules, options.hard);
         let (whose_rules, whose_constraint) = options.actions_of();
         let space = ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions);
@@ -90,6 +94,7 @@ impl Blueprint {
             left_out: file.map(|file| file.left_out).unwrap_or_default(),
             scene: Arc::new(scene),
             view: Arc::new(view(options.size)?),
+            ends,
         })
     }
 

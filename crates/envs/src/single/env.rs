@@ -12,7 +12,6 @@ use crate::options::EnvOptions;
 use crate::registry::scenario::EnvId;
 use crate::scenarios::common::outcome::MOST_TERMS;
 use crate::single::blueprint::{Blueprint, view};
-use crate::single::lookout::Ends;
 use crate::single::observer::Eye;
 use crate::single::simulation::Game;
 use crate::spaces::action::{ActionSpace, Move};
@@ -72,8 +71,7 @@ impl Env {
         let game = blueprint.template.clone();
         let (scene, view) = (Arc::clone(&blueprint.scene), Arc::clone(&blueprint.view));
         let looks = blueprint.render_options();
-        let ends = Ends::of(&game.world);
-        let eye = Eye::new(scene, view, &blueprint.options, looks, ends);
+        let eye = Eye::new(scene, view, &blueprint.options, looks, blueprint.ends);
         let mut env = Env {
             blueprint,
             game,

@@ -11,7 +11,7 @@ use super::lane::Lane;
 use super::lane_state::LaneState;
 use super::mixed::{self, MixedTask, Mixture};
 use super::options::{Autoreset, VecOptions};
-use crate::{ActionSpace, Batch, CostTerm, EnvError, EnvOptions, Environment};
+use crate::{ActionSpace, Batch, CostTerm, Env, EnvError, EnvOptions, Environment};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
@@ -61,13 +61,16 @@ impl VecEnv {
         env_options: &EnvOptions,
         options: VecOptions,
     ) -> Result<VecEnv, EnvError> {
-        let mut firsts = mixed::environments(id, env_options)?;
-        if firsts.len() > 1 {
-            let mixture = Mixture::of(&firsts)?;
-            return VecEnv::mixed(mixture, options, |task, _| Ok(Box::new(firsts[task].sibling())));
+        VecEnv::of_envs(&mixed::environments(id, env_options)?, options)
+    }
+
+    /// A batch of siblings of an environment, or of several, which the lanes take in turn.
+    pub fn of_envs(envs: &[Env], options: VecOptions) -> Result<VecEnv, EnvError> {
+        let sibling = |task: usize| Box::new(envs[task].sibling()) as Box<dyn Environment>;
+        if envs.len() == 1 {
+            return VecEnv::from_fn(options, |_| Ok(sibling(0)));
         }
-        let first = firsts.swap_remove(0);
-        VecEnv::from_fn(options, |_| Ok(Box::new(first.sibling())))
+        VecEnv::mixed(Mixture::of(envs)?, options, |task, _| Ok(sibling(task)))
     }
 
     /// A batch of different tasks with one action space: the lane of number `n` has task `n` modulo

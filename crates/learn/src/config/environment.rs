@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use hasard_envs::{
-    ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, Environment, FrameSize, Layout,
-    Mixture, ObservationKind, RuleSet, Scenario, VecEnv, VecOptions,
+    ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, Mixture,
+    ObservationKind, RuleSet, Scenario, VecEnv, VecOptions,
 };
 use serde::{Deserialize, Serialize};
 
@@ -218,11 +218,6 @@ impl EnvConfig {
     /// # Errors
     /// As [`EnvConfig::envs`]; or what does not go together in a batch.
     pub fn worlds(&self, options: &EnvOptions, worlds: VecOptions) -> Result<VecEnv, EnvError> {
-        let firsts = self.envs(options)?;
-        let sibling = |task: usize| Box::new(firsts[task].sibling()) as Box<dyn Environment>;
-        if firsts.len() == 1 {
-            return VecEnv::from_fn(worlds, |_| Ok(sibling(0)));
-        }
-        VecEnv::mixed(Mixture::of(&firsts)?, worlds, |task, _| Ok(sibling(task)))
+        VecEnv::of_envs(&self.envs(options)?, worlds)
     }
 }

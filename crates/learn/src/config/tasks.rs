@@ -25,7 +25,7 @@ impl TrainConfig {
             }
         }
         if self.constraint_statistic == ConstraintStatistic::StepMean {
-            let allowed = "episode-mean, which tells tasks apart".to_string();
+            let allowed = "episode-mean, which keeps tasks apart".to_string();
             return refuse("the constraint statistic", &self.constraint_statistic, allowed);
         }
         if !self.curriculum.is_empty() {

@@ -125,8 +125,7 @@ impl RunDirectory {
         for closing in closings {
             let mut lines = String::new();
             for (number, (episode, _)) in closing.played.iter().enumerate() {
-                let id = episode.task.unwrap_or(&config.env.id);
-                lines += &format!("{}\n", episode_line(id, number, episode));
+                lines += &format!("{}\n", episode_row(&config.env.id, number as u64, episode));
             }
             write_whole(
                 &self.path.join(EPISODES[usize::from(!closing.selected)]),
@@ -206,8 +205,10 @@ impl RunDirectory {
     }
 }
 
-/// A closing episode, in the words of `hasard eval --json`.
-fn episode_line(env: &str, number: usize, episode: &Episode) -> Value {
+/// An episode of an environment, or of one of its several tasks, as files of episodes and `hasard
+/// eval --json` have it.
+#[must_use]
+pub fn episode_row(env: &str, number: u64, episode: &Episode) -> Value {
     let named = |values: &mut dyn Iterator<Item = (&'static str, f64)>| -> Value {
         values
             .map(|(name, value)| (name.to_string(), json!(value)))
@@ -215,7 +216,7 @@ fn episode_line(env: &str, number: usize, episode: &Episode) -> Value {
             .into()
     };
     json!({
-        "env": env,
+        "env": episode.task.unwrap_or(env),
         "episode": number,
         "seed": episode.seed,
         "return": episode.episode_return,

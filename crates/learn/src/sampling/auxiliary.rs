@@ -47,6 +47,12 @@ impl Auxiliary {
         self.classes().map(|(.., classes)| CELLS * classes).sum()
     }
 
+    /// Cells of a row that are predicted.
+    #[must_use]
+    pub fn cells(self) -> usize {
+        CELLS * self.classes().count()
+    }
+
     /// Classes of the cells of a row that a world has shown: depth first, then labels.
     pub fn targets(self, what: Insight, shown: &[u8]) -> impl Iterator<Item = u8> {
         let [_, _, depth, labels] = what.places();

@@ -262,8 +262,7 @@ impl Sampler {
         let groups = self.worlds.groups();
         part.prepare(&self.shape, steps, self.lanes(), groups, self.constraints.len());
         part.trajectory_steps = self.trajectory_steps.min(steps);
-        let shown = self.auxiliary.targets(self.insight, &vec![0; self.insight.bytes()]).count();
-        part.shown.resize(steps * self.lanes() * shown, 0);
+        part.shown.resize(steps * self.lanes() * self.auxiliary.cells(), 0);
         part.initial_state.resize_with(self.state.len(), Vec::new);
         let trajectories = part.trajectories();
         for (initial, state) in part.initial_state.iter_mut().zip(&self.state) {
@@ -357,8 +356,7 @@ impl Sampler {
 
     /// Writes what the pictures of some lanes show at a step.
     fn write_shown(&self, part: &mut Part, step: usize, lanes: Range<usize>, shown: &[u8]) {
-        let rows = part.steps * part.lanes;
-        let cells = part.shown.len() / rows.max(1);
+        let cells = self.auxiliary.cells();
         if cells > 0 {
             let first = (step * part.lanes + lanes.start) * cells;
             let to = part.shown[first..].chunks_exact_mut(cells);

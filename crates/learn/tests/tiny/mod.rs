@@ -252,3 +252,14 @@ pub fn run(
     );
     (result.map_err(|error| error.to_string()), reports, warnings)
 }
+
+/// The weights of the last checkpoint of a run.
+pub fn weights(run: &std::path::Path) -> Vec<u8> {
+    let all =
+        std::fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
+    let last = all
+        .filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with("frames_"))
+        .max()
+        .unwrap();
+    std::fs::read(last.join("weights.safetensors")).unwrap()
+}

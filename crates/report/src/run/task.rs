@@ -181,8 +181,8 @@ mod tests {
             assert_eq!(run.rows[0].get("fps"), Some(1000.0));
             assert_eq!(run.evaluation.len(), 1);
             assert_eq!(run.evaluated("cost_mean").unwrap().mean, closing);
-            let told = &run.config.options["tasks"];
-            assert_eq!(told, "RemedyRushLevel1 + VolcanicVentureLevel1");
+            let tasks = &run.config.options["tasks"];
+            assert_eq!(tasks, "RemedyRushLevel1 + VolcanicVentureLevel1");
             assert!(!run.config.options.contains_key("constraints"));
         }
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::SystemTime;
 
-/// What tells a file from another that was put in its place.
+/// What distinguishes a file from another that was put in its place.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct Stamp {
     pub bytes: u64,

@@ -292,7 +292,7 @@ impl Run {
         json!({
             "id": id, "settled": self.settled, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
             "budget": config.safety_budget, "preset": config.options.get("preset"), "total": total, "state": state, "last": last,
-            "notes": self.notes.told(),
+            "notes": self.notes.as_json(),
             "evaluation": self.evaluation.found.as_ref().map(|found| evaluated::told(found, config)),
         })
     }

@@ -49,7 +49,7 @@ impl Notes {
     }
 
     /// Nothing where there is nothing to say.
-    pub fn told(&self) -> Value {
+    pub fn as_json(&self) -> Value {
         if self.words == Words::default() { Value::Null } else { json!(self.words) }
     }
 }
