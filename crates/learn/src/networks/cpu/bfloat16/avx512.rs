@@ -1,7 +1,8 @@
 //! Rounding by the instructions for it, many numbers at a time, and the tile of pairs.
 
 use std::arch::x86_64::{
-    __m128i, __m256bh, __m256i, __m512bh, __m512i, _mm_loadu_si128, _mm256_storeu_si256,
+    __m128i, __m256bh, __m256i, __m512bh, __m512i, _MM_HINT_T0, _mm_loadu_si128, _mm_prefetch,
+    _mm256_storeu_si256,
     _mm512_add_ps, _mm512_cvtepi32_ps, _mm512_cvtepu8_epi32, _mm512_cvtne2ps_pbh,
     _mm512_cvtneps_pbh, _mm512_loadu_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps,
     _mm512_set1_ps, _mm512_storeu_si512,
@@ -29,6 +30,9 @@ pub fn round(from: &[f32], to: &mut [u16]) {
     }
 }
 
+/// How far ahead pixels are asked for: some hundreds of cycles of work.
+const PIXELS_AHEAD: usize = 2048;
+
 #[target_feature(enable = "avx512f,avx512bf16,avx512vl")]
 pub fn round_pixels(pixels: &[u8], scale: &[f32], shift: &[f32], out: &mut [u16]) {
     let (pixels, (out, last)) = (pixels.as_chunks::<16>(), out.as_chunks_mut::<16>());
@@ -39,6 +43,8 @@ pub fn round_pixels(pixels: &[u8], scale: &[f32], shift: &[f32], out: &mut [u16]
         // SAFETY: every pointer is that of a whole array; a register of rounded numbers is any
         // bits.
         unsafe {
+            // The pixels of a rollout are in no cache by now.
+            _mm_prefetch::<_MM_HINT_T0>(pixels.as_ptr().wrapping_add(PIXELS_AHEAD).cast());
             let pixels = _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(
                 pixels.as_ptr().cast::<__m128i>(),
             )));
