@@ -16,6 +16,10 @@
 //! safety-budget = [2.5, 5, 7.5]
 //! full-actions = [false, true]
 //!
+//! [settings]                       # settings of config.json, the same for every run: no part of a folder's name
+//! learning.products = "bfloat16"
+//! evaluation.confirming_episodes = 200
+//!
 //! [[grid]]                         # optional: several grids, each on top of what stands above
 //! algorithms = ["PPOCost"]
 //! options.cost-scale = [0.5, 2]
@@ -28,7 +32,7 @@ use crate::table::{GRID_KEYS, algorithms, change, levels, scenarios};
 use std::path::PathBuf;
 use toml::{Table, Value};
 
-const TOP_KEYS: [&str; 5] = ["experiment", "out", "parallel", "evaluate", "grid"];
+const TOP_KEYS: [&str; 6] = ["experiment", "out", "parallel", "evaluate", "settings", "grid"];
 
 impl Sweep {
     /// Understands the text of a sweep file.
@@ -67,7 +71,13 @@ fn understand(text: &str) -> Result<Sweep, String> {
     let mut sweep = match table.get("experiment") {
         None => {
             let grid = Grid { levels: vec![1], seeds: vec![1], ..Grid::default() };
-            Sweep { out: PathBuf::from("runs"), parallel: 1, evaluate: 0, grids: vec![grid] }
+            Sweep {
+                out: PathBuf::from("runs"),
+                parallel: 1,
+                evaluate: 0,
+                settings: Vec::new(),
+                grids: vec![grid],
+            }
         }
         Some(name) => {
             paper::experiment(name.as_str().ok_or("`experiment` must be a name in quotes")?)?
@@ -88,6 +98,10 @@ fn understand(text: &str) -> Result<Sweep, String> {
     if let Some(evaluate) = table.get("evaluate") {
         let count = evaluate.as_integer().and_then(|count| u32::try_from(count).ok());
         sweep.evaluate = count.ok_or("`evaluate` must be a whole number of episodes from 0")?;
+    }
+    if let Some(settings) = table.get("settings") {
+        let settings = settings.as_table().ok_or("`settings` must be a table")?;
+        named_settings("", settings, &mut sweep.settings)?;
     }
     let mut rest = table.clone();
     if table.contains_key("experiment") {
@@ -125,6 +139,46 @@ fn understand(text: &str) -> Result<Sweep, String> {
         }
     }
     Ok(sweep)
+}
+
+/// Settings by their names in config.json, as `--set` takes them.
+fn named_settings(
+    within: &str,
+    table: &Table,
+    found: &mut Vec<(String, String)>,
+) -> Result<(), String> {
+    for (key, value) in table {
+        let name = if within.is_empty() { key.clone() } else { format!("{within}.{key}") };
+        if let Value::Table(table) = value {
+            named_settings(&name, table, found)?;
+        } else {
+            let text = setting_value(value).ok_or_else(|| {
+                format!("`settings.{name}` must be a text, a number, true, false or a list of them")
+            })?;
+            found.push((name, text));
+        }
+    }
+    Ok(())
+}
+
+fn setting_value(value: &Value) -> Option<String> {
+    match value {
+        Value::Array(items) => {
+            let items: Option<Vec<String>> = items
+                .iter()
+                .map(|item| match item {
+                    Value::String(text) => Some(format!("{text:?}")),
+                    other => setting_value(other),
+                })
+                .collect();
+            Some(format!("[{}]", items?.join(",")))
+        }
+        Value::String(text) => Some(text.clone()),
+        Value::Integer(number) => Some(number.to_string()),
+        Value::Float(number) => Some(number.to_string()),
+        Value::Boolean(on) => Some(on.to_string()),
+        _ => None,
+    }
 }
 
 fn line_and_column(text: &str, at: usize) -> (usize, usize) {

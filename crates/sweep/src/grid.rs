@@ -42,6 +42,9 @@ pub struct Sweep {
     /// Episodes that the agent of each finished run is evaluated on, kept in its directory as
     /// `eval.jsonl`; 0 for none.
     pub evaluate: u32,
+    /// Settings of `config.json` and their values, the same for every run; the folders of runs do
+    /// not say them.
+    pub settings: Vec<(String, String)>,
     /// The grids; a run that several ask for is made once.
     pub grids: Vec<Grid>,
 }
@@ -84,6 +87,9 @@ impl Sweep {
                                 &options,
                             );
                             job.evaluate = self.evaluate;
+                            for (name, value) in &self.settings {
+                                job.add_option("set", &format!("{name}={value}"));
+                            }
                             if seen.insert(job.directory.clone()) {
                                 jobs.push((index, job));
                             }

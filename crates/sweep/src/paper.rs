@@ -170,5 +170,6 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
     };
     let grids = tables.iter().map(grid).collect::<Result<Vec<Grid>, String>>()?;
     let evaluate = if name.starts_with("quick") || name == "behaviour" { 100 } else { 0 };
-    Ok(Sweep { out: PathBuf::from("runs"), parallel: 1, evaluate, grids })
+    let (out, settings) = (PathBuf::from("runs"), Vec::new());
+    Ok(Sweep { out, parallel: 1, evaluate, settings, grids })
 }

@@ -32,6 +32,27 @@ fn a_grid_expands_to_every_combination_once() {
 }
 
 #[test]
+fn settings_go_into_every_command_and_no_folder() {
+    let text = "experiment = 'quick'\nseeds = [11]\n[settings]\nlearning.products = 'bfloat16'\n\
+                evaluation.confirming_episodes = 200\nalgorithm_settings.pid_gains = [1.5, 0.2, 0]\n";
+    let jobs = Sweep::parse(text).unwrap().jobs().unwrap();
+    let line = jobs[0].command_line("hasard");
+    for part in [
+        " --set learning.products=bfloat16",
+        " --set evaluation.confirming_episodes=200",
+        " --set 'algorithm_settings.pid_gains=[1.5,0.2,0]'",
+    ] {
+        assert!(line.contains(part), "{part}: {line}");
+    }
+    assert!(!jobs[0].directory.to_string_lossy().contains("bfloat16"));
+    let wrong = Sweep::parse("experiment = 'quick'\n[settings]\nlearning.rate = 2020-01-01\n");
+    assert_eq!(
+        wrong.unwrap_err(),
+        "`settings.learning.rate` must be a text, a number, true, false or a list of them"
+    );
+}
+
+#[test]
 fn the_papers_experiments_have_their_sizes() {
     let count = |name: &str| paper::experiment(name).unwrap().jobs().unwrap().len();
     for (name, expected) in [
