@@ -205,11 +205,11 @@ fn quicken(config: &mut TrainConfig) {
     config.algorithm_settings.multiplier_rate = rate;
     // The integral alone runs in circles, which a large proportional part damps; and what a
     // multiplier lags behind a policy that grows better at earning is taken off the budget
-    // beforehand. docs/tried/multiplier_rate.md has the numbers.
+    // beforehand. docs/tried/multiplier_rate.md and levers.md have the numbers.
     config.algorithm_settings.pid_gains = (1.5, rate, 0.0);
     (config.algorithm_settings.pid_initial, config.algorithm_settings.pid_decay) = (0.0, 0.0);
-    config.algorithm_settings.pid_reference_budget = Some(45.0);
-    config.budget_share = 0.9;
+    config.algorithm_settings.pid_reference_budget = Some(450.0);
+    config.budget_share = 0.8;
     config.reporting.report_seconds = 5.0;
 }
 
@@ -244,7 +244,7 @@ mod tests {
             1.0
         );
         let quick = make(AlgorithmKind::PpoLag, Preset::Quick);
-        assert_eq!((paper.budget_share, quick.budget_share), (1.0, 0.9));
+        assert_eq!((paper.budget_share, quick.budget_share), (1.0, 0.8));
         for plain in [&paper, &released] {
             assert_eq!(
                 (plain.algorithm_settings.pid_reference_budget, plain.budget_share),
