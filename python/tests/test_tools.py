@@ -141,3 +141,15 @@ def test_small_copies_of_runs_draw_the_same_tables(tmp_path):
     before = (copy / "config.json").stat().st_mtime_ns
     keep([str(tmp_path / "runs"), str(tmp_path / "copies")])
     assert (copy / "config.json").stat().st_mtime_ns == before
+
+
+def test_the_published_trainer_is_timed_once_warm_and_only_where_it_lasts():
+    trainer = tool("beside_published_trainer")
+    line = "[2026-11-25 21:09:{:02},500][14957] Fps is (10 sec: 0.0). Total num frames: {}. Throughput: 0: 2.0.\n"
+    frames = {0: 0, 5: 0, 10: 4096, 15: 9000, 20: 20_000, 25: 30_000, 30: 40_000, 35: 50_000}
+    rows = list(trainer.reports(["another line\n", *(line.format(second, count) for second, count in frames.items())]))
+    assert [count for _, count in rows] == list(frames.values()) and rows[1][0] - rows[0][0] == 5
+    # Frames begin at second 10; from 20, ten seconds later, 20,000 frames in ten seconds.
+    assert trainer.rate_after(rows, 10, 10) == 2000
+    assert trainer.rate_after(rows, 10, 60) is None
+    assert trainer.rate_after(rows[:2], 10, 10) is None
