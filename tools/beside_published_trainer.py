@@ -94,8 +94,10 @@ def ours(arguments, seed, folder, options):
     out = pathlib.Path(folder) / "run"
     command = [*arguments.under, arguments.program, "train", *OURS.split(), "--seed", str(seed), "--frames", str(arguments.frames)]
     begun = time.monotonic()
-    subprocess.run([*command, "--out", out, *options], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    done = subprocess.run([*command, "--out", out, *options], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     whole = time.monotonic() - begun
+    if done.returncode or not (out / "metrics.jsonl").exists():
+        raise SystemExit(f"{shlex.join(map(str, done.args))} ended with {done.returncode}:\n{done.stderr[-2000:]}")
     row = json.loads((out / "metrics.jsonl").read_text().splitlines()[-1])
     return row["frames"] / row["wall_s"], row["frames"] / whole
 
