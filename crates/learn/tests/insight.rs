@@ -33,7 +33,7 @@ fn config() -> TrainConfig {
     config
 }
 
-fn go(start: Start<'_>, path: &Path) -> Vec<u8> {
+fn go(start: Start, path: &Path) -> Vec<u8> {
     let stop = AtomicBool::new(false);
     let mut warn = |warning: String| panic!("{warning}");
     let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut warn };

@@ -24,7 +24,7 @@ fn config() -> TrainConfig {
     config
 }
 
-fn start(path: &Path) -> Start<'static> {
+fn start(path: &Path) -> Start {
     if path.join("config.json").exists() { Start::RESUME } else { Start::Fresh(config()) }
 }
 

@@ -419,7 +419,7 @@ fn a_curriculum_carries_weights_over() {
     let (first, second) = (tiny::directory("first-level"), tiny::directory("second-level"));
     tiny::run(Start::Fresh(config.clone()), &first).0.unwrap();
     config.learning.rate = 0.0;
-    let (result, reports, _) = tiny::run(Start::From(config, &first), &second);
+    let (result, reports, _) = tiny::run(Start::From(config, first.clone()), &second);
     assert_eq!(
         result.unwrap().last.updates,
         8,
@@ -517,7 +517,7 @@ fn a_curriculum_stopped_at_every_moment_equals_the_uninterrupted_one() {
         Lesson { level: 1, frames: 3 * rollout - 5 },
         Lesson { level: 2, frames: 3 * rollout + 5 },
     ]);
-    let go = |start: Start<'_>, path: &Path, rollouts: usize| {
+    let go = |start: Start, path: &Path, rollouts: usize| {
         let stop = AtomicBool::new(false);
         let mut count = 0;
         let mut report = |_: &hasard_learn::runs::report::Report| {

@@ -62,7 +62,7 @@ impl Environment for Bell {
 
 /// Trains until the worlds of the evaluation number `at` have made a step; gives how many
 /// evaluations there were.
-fn train_until(start: Start<'_>, path: &Path, at: usize) -> (Summary, usize) {
+fn train_until(start: Start, path: &Path, at: usize) -> (Summary, usize) {
     let stop = Arc::new(AtomicBool::new(false));
     let made = AtomicUsize::new(0);
     let worlds = |_: &EnvConfig, options: VecOptions| -> Result<VecEnv, EnvError> {

@@ -3,6 +3,7 @@
 mod tiny;
 
 use hasard_learn::config::{AlgorithmKind, CriticInput, TrainConfig};
+use hasard_learn::runs::agent_file::export;
 use hasard_learn::runs::report::Report;
 use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Start, train_together};
@@ -61,7 +62,7 @@ impl Exchange for Seat {
 /// Trains with `ranks` workers, of which the last leaves after some exchanges; gives the first
 /// one's reports.
 fn together(
-    start: Start<'_>,
+    start: Start,
     at: &Path,
     ranks: usize,
     leaves_after: usize,
@@ -159,6 +160,36 @@ fn four_workers_learn_what_one_does_and_two_runs_of_them_are_equal() {
         for at in &names {
             std::fs::remove_dir_all(at).unwrap();
         }
+    }
+}
+
+/// What each worker is sent of an agent's file is the whole of it.
+#[test]
+fn several_workers_begin_with_an_agents_file_as_one_does() {
+    let [before, alone, both] =
+        ["before", "from-alone", "from-both"].map(|name| directory(&format!("together-{name}")));
+    let mut config = short(AlgorithmKind::PpoPid);
+    config.frames = 512 * 2;
+    config.evaluation.every = Some(config.frames);
+    (config.evaluation.episodes, config.evaluation.confirming_episodes) = (2, Some(2));
+    run(Start::Fresh(config.clone()), &before).0.unwrap();
+    let file = before.join("one.agent");
+    std::fs::write(&file, export(&before).unwrap()).unwrap();
+    config.evaluation.every = Some(0);
+    let start = || Start::From(config.clone(), file.clone());
+    let (outcome, expected, _) = run(start(), &alone);
+    outcome.unwrap();
+    let (outcome, reports) = together(start(), &both, 2, usize::MAX);
+    outcome.unwrap();
+    assert_eq!(reports.len(), expected.len());
+    for ((name, ours), (_, expected)) in numbers(&reports[0]).iter().zip(numbers(&expected[0])) {
+        assert!(
+            (ours - expected).abs() <= 1e-4 * expected.abs().max(1.0),
+            "{name}: {ours} and {expected}"
+        );
+    }
+    for at in [before, alone, both] {
+        std::fs::remove_dir_all(at).unwrap();
     }
 }
 

@@ -42,7 +42,8 @@ pub struct TrainArgs {
     /// names
     #[arg(long, value_name = "LEVELS")]
     pub curriculum: Option<String>,
-    /// Begin with the weights and normalisers of another run
+    /// Begin with the weights and normalisers of another run, or of an agent: a file that
+    /// export-agent wrote, or zoo:NAME
     #[arg(long, value_name = "RUN", conflicts_with = "resume")]
     pub init_from: Option<PathBuf>,
     /// Cost that an episode may have; TERM=COST for one named cost term, several times for several

@@ -8,6 +8,7 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt::{self, Manner};
 use crate::progress::{Progress, grouped};
 use crate::settings::{Elsewhere, scenario_of};
+use crate::zoo;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use hasard_envs::EnvOptions;
@@ -26,17 +27,17 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 /// A run about to begin.
-pub struct Begun<'a> {
+pub struct Begun {
     /// Its directory.
     pub directory: PathBuf,
-    start: Start<'a>,
+    start: Start,
     config: TrainConfig,
     options: EnvOptions,
 }
 
 /// What the words of the command begin; `typed` tells which flags were given and which have their
 /// default.
-pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, Failure> {
+pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
     let algorithm: AlgorithmKind = args.algo.parse().map_err(Failure::bad)?;
     // By the algorithm's own name, however it was typed.
     let directory = args.out.clone().unwrap_or_else(|| {
@@ -62,7 +63,7 @@ pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, F
     } else {
         let config = configuration(&with_rules(args, typed))?;
         let start = match &args.init_from {
-            Some(other) => Start::From(config.clone(), other),
+            Some(other) => Start::From(config.clone(), zoo::find(other.as_os_str())?),
             None => Start::Fresh(config.clone()),
         };
         (start, config)
@@ -78,7 +79,7 @@ pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, F
     Ok(Begun { directory, start, config, options })
 }
 
-impl Begun<'_> {
+impl Begun {
     /// Whether it is worth a second to say how long it will take: a fresh run of minutes.
     fn is_long(&self) -> bool {
         let fresh = !matches!(self.start, Start::Resume { .. });
@@ -96,7 +97,7 @@ impl Begun<'_> {
         self,
         team: &Team,
         hooks: &mut Hooks<'_>,
-        begins: impl Fn(&Begun<'_>),
+        begins: impl Fn(&Begun),
     ) -> Result<(PathBuf, Summary), Failure> {
         let (mut drawn, mut failed_drawing) = (false, None);
         let told = std::cell::Cell::new(false);

@@ -62,6 +62,7 @@ mod tests {
             Constraint { term: None, budget: 50.0 },
             Constraint { term: Some("jumps".into()), budget: 10.0 },
         ];
+        config.budget_share = 0.9;
         config
     }
 

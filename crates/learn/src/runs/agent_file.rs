@@ -219,7 +219,13 @@ impl AgentFile {
     /// The agent's file at a place: a file, or `zoo:NAME`, one that is part of the program. `None`
     /// for anything else, such as a run's directory.
     pub fn at(place: &Path) -> Result<Option<AgentFile>, LearnError> {
-        (zoo::bytes(place).is_some() || place.is_file()).then(|| AgentFile::read(place)).transpose()
+        AgentFile::is_at(place).then(|| AgentFile::read(place)).transpose()
+    }
+
+    /// Whether a place is that of a file, or of an agent of the program, rather than a run's.
+    #[must_use]
+    pub fn is_at(place: &Path) -> bool {
+        zoo::bytes(place).is_some() || place.is_file()
     }
 
     /// Reads an agent's file.
@@ -311,6 +317,21 @@ impl AgentFile {
         learner.pixels.mean.clone_from(&self.pixel_mean);
         learner.pixels.variance.clone_from(&self.pixel_variance);
         learner.replaced();
+        Ok(())
+    }
+
+    /// Puts the weights into a learner that is to learn on: the statistics of pixels count as many
+    /// pictures as the agent's own training saw. What returns were like is not in the file.
+    pub(crate) fn begin(&self, learner: &mut Learner) -> Result<(), LearnError> {
+        self.restore_weights(learner).map_err(|_| {
+            LearnError::Config(
+                "the agent to begin with does not fit: it has other layers, critics, actions or pictures than \
+                 the run; give the run those of the agent's settings, or another agent"
+                    .into(),
+            )
+        })?;
+        let config = &self.card.config;
+        learner.pixels.count = (config.frames / u64::from(config.env.frame_skip).max(1)) as f64;
         Ok(())
     }
 }

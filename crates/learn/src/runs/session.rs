@@ -15,6 +15,7 @@ use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{Actor, ImageShape, ModelShape};
 use crate::random::{Purpose, Stream};
+use crate::runs::agent_file::AgentFile;
 use crate::runs::checkpoint::{Loaded, Progress};
 use crate::runs::watch::Watch;
 use crate::sampling::auxiliary::Auxiliary;
@@ -37,6 +38,8 @@ pub enum Beginning<'a> {
     Everything(Box<Loaded>),
     /// Weights and normalisers of a checkpoint.
     Weights(Box<Loaded>),
+    /// Weights and statistics of pixels of an agent's file, these its bytes.
+    Agent(Vec<u8>),
     /// Weights, normalisers and counters of the lesson before.
     Lesson(&'a Session),
 }
@@ -184,6 +187,10 @@ impl Session {
         match beginning {
             Beginning::Nothing => {}
             Beginning::Weights(loaded) => loaded.restore_weights(&mut learner)?,
+            Beginning::Agent(bytes) => {
+                let file = AgentFile::parse(bytes).map_err(LearnError::Config)?;
+                file.begin(&mut learner)?;
+            }
             Beginning::Lesson(before) => {
                 learner.inherit(&before.learner)?;
                 (frames, rollouts) = (before.frames, before.rollouts);

@@ -42,6 +42,7 @@ enum Sent<L> {
     Nothing,
     Everything(L),
     Weights(L),
+    Agent(Vec<u8>),
 }
 
 fn spoiled() -> LearnError {
@@ -86,6 +87,7 @@ pub fn invite(
     let beginning = match beginning {
         Beginning::Everything(loaded) => Sent::Everything(&**loaded),
         Beginning::Weights(loaded) => Sent::Weights(&**loaded),
+        Beginning::Agent(bytes) => Sent::Agent(bytes.clone()),
         Beginning::Nothing | Beginning::Lesson(_) => Sent::Nothing,
     };
     let text = serde_json::to_string(config).map_err(|_| spoiled())?;
@@ -112,6 +114,7 @@ impl Invitation {
             Sent::Nothing => Beginning::Nothing,
             Sent::Everything(loaded) => Beginning::Everything(loaded),
             Sent::Weights(loaded) => Beginning::Weights(loaded),
+            Sent::Agent(bytes) => Beginning::Agent(bytes),
         };
         alike(&team, &config)?;
         Ok(Invitation { team, config, beginning })

@@ -3,13 +3,14 @@
 //! Long because one loop owns a run from its start to its last checkpoint.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::networks::device::ComputeDevice;
+use crate::runs::agent_file::AgentFile;
 use crate::runs::checkpoint::{Checkpoint, Loaded, Progress, Store};
 use crate::runs::evaluation::Evaluation;
 use crate::runs::examiner::Examiner;
@@ -35,7 +36,7 @@ pub struct Hooks<'a> {
 
 /// How a run begins.
 #[derive(Clone)]
-pub enum Start<'a> {
+pub enum Start {
     /// In a new directory.
     Fresh(TrainConfig),
     /// From the last checkpoint in the directory; settings given here, each as `NAME=VALUE`,
@@ -44,13 +45,13 @@ pub enum Start<'a> {
         /// Settings that are to be others than before.
         settings: Vec<String>,
     },
-    /// In a new directory, with the weights and normalisers of another run.
-    From(TrainConfig, &'a Path),
+    /// In a new directory, with the weights and normalisers of another run, or of an agent's file.
+    From(TrainConfig, PathBuf),
 }
 
-impl Start<'_> {
+impl Start {
     /// From the last checkpoint in the directory, as before.
-    pub const RESUME: Start<'static> = Start::Resume { settings: Vec::new() };
+    pub const RESUME: Start = Start::Resume { settings: Vec::new() };
 }
 
 /// How a run ended.
@@ -70,7 +71,7 @@ pub struct Summary {
 /// In synchronous mode everything that is learned follows from the settings alone; a run that was
 /// stopped, or killed, and resumed equals one that never stopped, bit by bit.
 pub fn train(
-    start: Start<'_>,
+    start: Start,
     directory: &Path,
     make_worlds: &MakeWorlds<'_>,
     hooks: &mut Hooks<'_>,
@@ -82,7 +83,7 @@ pub fn train(
 /// evaluates and reports. The others [`follow`](crate::runs::together::Invitation::follow).
 pub fn train_together(
     team: &Team,
-    start: Start<'_>,
+    start: Start,
     directory: &Path,
     make_worlds: &MakeWorlds<'_>,
     hooks: &mut Hooks<'_>,
@@ -146,7 +147,7 @@ impl Begun {
     }
 }
 
-fn begin(start: Start<'_>, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun, LearnError> {
+fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun, LearnError> {
     let new = |config: TrainConfig, beginning| {
         let run = RunDirectory::create(directory, &config)?;
         Ok(Begun { run, config, beginning, fresh: true, changed: false })
@@ -162,9 +163,16 @@ fn begin(start: Start<'_>, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Be
             let config = config.begun();
             config.check()?;
             ComputeDevice::of(&config)?;
-            let loaded = Store::new(other, 1).newest(hooks.warn)?;
+            if AgentFile::is_at(&other) {
+                let (bytes, _) = AgentFile::read_whole(&other)?;
+                return new(config, Beginning::Agent(bytes));
+            }
+            let loaded = Store::new(&other, 1).newest(hooks.warn)?;
             let loaded = loaded.ok_or_else(|| {
-                LearnError::content(other, "no checkpoint to take weights from is here")
+                LearnError::content(
+                    &other,
+                    "no checkpoint to take weights from is here; give a run's directory, an agent's file or zoo:NAME",
+                )
             })?;
             new(config, Beginning::Weights(Box::new(loaded)))
         }

@@ -234,10 +234,7 @@ pub fn directory(name: &str) -> PathBuf {
 }
 
 /// Trains to the end, collecting reports and warnings.
-pub fn run(
-    start: Start<'_>,
-    directory: &Path,
-) -> (Result<Summary, String>, Vec<Report>, Vec<String>) {
+pub fn run(start: Start, directory: &Path) -> (Result<Summary, String>, Vec<Report>, Vec<String>) {
     let (mut reports, mut warnings) = (Vec::new(), Vec::new());
     let stop = AtomicBool::new(false);
     let result = train(

@@ -1,0 +1,78 @@
+//! Runs that begin with the weights of an agent's file.
+
+mod tiny;
+
+use hasard_learn::config::{AlgorithmKind, TrainConfig};
+use hasard_learn::runs::agent_file::export;
+use hasard_learn::runs::trainer::Start;
+use std::fs;
+use std::path::PathBuf;
+
+/// A run that has selected a checkpoint, and the file of its agent.
+fn trained(name: &str) -> (TrainConfig, PathBuf, PathBuf) {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.frames = 4 * config.frames_per_rollout();
+    config.evaluation.every = Some(config.frames);
+    (config.evaluation.episodes, config.evaluation.confirming_episodes) = (2, Some(2));
+    let run = tiny::directory(name);
+    tiny::run(Start::Fresh(config.clone()), &run).0.unwrap();
+    let file = run.with_extension("agent");
+    fs::write(&file, export(&run).unwrap()).unwrap();
+    (config, run, file)
+}
+
+fn network(bytes: &[u8]) -> Vec<(String, Vec<f32>)> {
+    let tensors = safetensors::SafeTensors::deserialize(bytes).unwrap();
+    let mut all: Vec<(String, Vec<f32>)> = tensors
+        .iter()
+        .filter(|(name, _)| name.starts_with("network"))
+        .map(|(name, view)| {
+            let (words, _) = view.data().as_chunks::<4>();
+            (name.to_string(), words.iter().map(|word| f32::from_le_bytes(*word)).collect())
+        })
+        .collect();
+    all.sort_by(|a, b| a.0.cmp(&b.0));
+    all
+}
+
+/// With a learning rate of zero the weights at the end are those of the file: the run's own to
+/// within half a step of their eight bits.
+#[test]
+fn a_run_begins_with_the_weights_of_a_file() {
+    let (mut config, run, file) = trained("from-agent");
+    config.learning.rate = 0.0;
+    let second = tiny::directory("from-agent-second");
+    tiny::run(Start::From(config, file.clone()), &second).0.unwrap();
+    let (before, after) = (network(&tiny::weights(&run)), network(&tiny::weights(&second)));
+    assert_eq!(before.len(), after.len());
+    let mut largest_step = 0.0f32;
+    for ((name, before), (other, after)) in before.iter().zip(&after) {
+        assert_eq!((name, before.len()), (other, after.len()));
+        let largest = before.iter().fold(0.0f32, |largest, weight| largest.max(weight.abs()));
+        for (a, b) in before.iter().zip(after) {
+            assert!((a - b).abs() <= largest / 253.0, "{name}: {a} became {b}");
+            largest_step = largest_step.max((a - b).abs());
+        }
+    }
+    assert!(largest_step > 0.0, "the file has eight bits a weight, the run thirty-two");
+    for at in [run, second] {
+        fs::remove_dir_all(at).unwrap();
+    }
+    fs::remove_file(file).unwrap();
+}
+
+#[test]
+fn a_file_of_another_network_is_refused_and_nothing_is_left_behind() {
+    let (mut config, run, file) = trained("from-other");
+    config.network.dense = vec![96];
+    let second = tiny::directory("from-other-second");
+    let refused = tiny::run(Start::From(config.clone(), file.clone()), &second).0.unwrap_err();
+    assert!(refused.contains("does not fit"), "{refused}");
+    assert!(!second.exists());
+    fs::write(&file, "no agent").unwrap();
+    let refused = tiny::run(Start::From(config, file.clone()), &second).0.unwrap_err();
+    assert!(refused.contains("export-agent"), "{refused}");
+    assert!(!second.exists());
+    fs::remove_dir_all(run).unwrap();
+    fs::remove_file(file).unwrap();
+}
