@@ -273,6 +273,22 @@ fn a_report_on_many_experiments() {
             one.display()
         );
     }
+
+    // Random play that returns more than PPO ever did: no scale, and the report says where.
+    let high = "{\"env\":\"VolcanicVentureLevel1-v0\",\"rules\":\"tables\",\"return\":1e6,\"cost\":1,\"length\":525}\n";
+    std::fs::write(runs.join("random-more.jsonl"), high.repeat(40)).unwrap();
+    write_report(std::slice::from_ref(&runs), &again, "Synthetic runs").unwrap();
+    let text = std::fs::read_to_string(again.join("report.md")).unwrap();
+    assert!(text.contains("than a random policy does: VolcanicVentureLevel1-v0."), "{safety}");
+    let row = text
+        .split("## Safety")
+        .nth(1)
+        .unwrap()
+        .lines()
+        .find(|line| line.starts_with("| Volcanic Venture | 1 | P3O |"))
+        .unwrap();
+    let cells: Vec<&str> = row.split(" | ").collect();
+    assert!(cells[4..7].iter().all(|cell| !cell.contains('.')), "{row}");
 }
 
 /// The last ten of five hundred points: of 80 reports they lie on the lines between the last three.

@@ -25,10 +25,10 @@ impl<'a> Baselines<'a> {
         Baselines { found, groups }
     }
 
-    /// Mean return of the random policy on a run's environment, from episodes of a player named
+    /// Return of the random policy on a run's environment, from episodes of a player named
     /// `random...`. Episodes that do not say their rules are taken for soft ones of the default
     /// rules.
-    pub fn random(&self, config: &Config) -> Option<f64> {
+    pub fn random(&self, config: &Config) -> Option<Estimate> {
         let rules = config.rules().unwrap_or("paper");
         let here = self.found.players.iter().filter(|(key, _)| {
             key.player.starts_with("random")
@@ -39,11 +39,12 @@ impl<'a> Baselines<'a> {
             one.rules.as_deref().unwrap_or("paper") == rules
                 && one.hard.unwrap_or(false) == config.hard()
         });
-        mean(&same.map(|one| one.episode_return).collect::<Vec<_>>())
+        Estimate::of(&same.map(|one| one.episode_return).collect::<Vec<_>>())
     }
 
-    /// Mean return of PPO on the same task; of several such experiments, of the longest.
-    pub fn ppo(&self, group: &Group) -> Option<f64> {
+    /// Mean return of PPO on the same task, and what it is at least: by the intervals of its seeds'
+    /// episodes. Of several such experiments, those of the longest.
+    pub fn ppo(&self, group: &Group) -> Option<(f64, f64)> {
         let task = |config: &Config| {
             let options = ["rules", "hard", "full_actions", "observation", "frame_skip"];
             (
@@ -57,14 +58,41 @@ impl<'a> Baselines<'a> {
             one.config().algo.eq_ignore_ascii_case("PPO") && task(one.config()) == own
         });
         let longest = same.max_by(|a, b| a.frames_span().1.total_cmp(&b.frames_span().1))?;
-        longest.estimate(longest.headline(), "return_mean").map(|one| one.mean)
+        let returned = longest.estimate(longest.headline(), "return_mean")?.mean;
+        let below = |run: &Run| {
+            let episodes = run.selected.as_ref()?.last.as_ref()?.get("return_mean")?;
+            Some(episodes.mean - episodes.low())
+        };
+        let below: Vec<f64> = longest.runs.iter().filter_map(below).collect();
+        Some((returned, returned - mean(&below).unwrap_or(0.0)))
+    }
+
+    /// What random play and PPO return: the ends of the scale. There is none where PPO has not
+    /// learned to return more than chance does, lest noise be divided by noise.
+    fn scale(&self, group: &Group) -> Option<(f64, f64)> {
+        let (random, (ppo, least)) = (self.random(group.config())?, self.ppo(group)?);
+        (least > random.high()).then_some((random.mean, ppo))
+    }
+
+    /// The tasks on which PPO has not learned to return more than chance does.
+    pub fn unlearned(&self, groups: &[Group]) -> Vec<String> {
+        let mut tasks: Vec<String> = groups
+            .iter()
+            .filter(|group| {
+                self.random(group.config()).is_some()
+                    && self.ppo(group).is_some()
+                    && self.scale(group).is_none()
+            })
+            .map(|group| group.config().env.clone())
+            .collect();
+        tasks.sort();
+        tasks.dedup();
+        tasks
     }
 
     /// The scores of an experiment's seeds; empty where an end of the scale is missing.
     pub fn scores(&self, group: &Group) -> Vec<Score> {
-        let (Some(random), Some(ppo)) = (self.random(group.config()), self.ppo(group)) else {
-            return Vec::new();
-        };
+        let Some((random, ppo)) = self.scale(group) else { return Vec::new() };
         let score = |run: &Run| {
             let judged = judged(run)?;
             let normalised = normalised(judged.0, random, ppo)?;

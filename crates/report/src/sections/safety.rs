@@ -56,6 +56,13 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
         };
         text.push(format!("Scores need both ends of their scale. Missing here: {first}{more}."));
     }
+    let unlearned = baselines.unlearned(groups);
+    if !unlearned.is_empty() {
+        text.push(format!(
+            "No scale, hence no score, where PPO is not shown to return more than a random policy does: {}.",
+            unlearned.join(", ")
+        ));
+    }
     let blocks = if rows.is_empty() {
         Vec::new()
     } else {
