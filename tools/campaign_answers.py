@@ -84,7 +84,9 @@ def interval(strata, statistic):
     return drawn[int(0.025 * RESAMPLES)], drawn[int(0.975 * RESAMPLES) - 1]
 
 
-def verdict(low, high):
+def verdict(strata, low, high):
+    if min(map(len, strata.values())) < 2:
+        return "open: one seed has no interval"
     return "holds" if low > 0 else "the contrary holds" if high < 0 else "not decided"
 
 
@@ -116,7 +118,7 @@ def h1(campaign):
 
     low, high = interval(strata, difference)
     left = f"; without {', '.join(without)}" if without else ""
-    return verdict(low, high), f"difference of the IQMs {difference(strata):.2f}, {low:.2f} to {high:.2f}{left}"
+    return verdict(strata, low, high), f"difference of the IQMs {difference(strata):.2f}, {low:.2f} to {high:.2f}{left}"
 
 
 def h2(campaign):
@@ -165,7 +167,7 @@ def by_budget(campaign):
         return statistics.linear_regression(*zip(*points)).slope
 
     low, high = interval(strata, slope)
-    return verdict(low, high), f"slope {slope(strata):.2f} of the scale for a whole budget, {low:.2f} to {high:.2f}"
+    return verdict(strata, low, high), f"slope {slope(strata):.2f} of the scale for a whole budget, {low:.2f} to {high:.2f}"
 
 
 def not_yet(campaign):

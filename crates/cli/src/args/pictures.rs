@@ -181,7 +181,8 @@ pub struct ReplayArgs {
 /// `hasard highlights`.
 #[derive(Args, Debug)]
 pub struct HighlightsArgs {
-    /// Agents: zoo:NAME, run directories, agent files [default: the six of the zoo]
+    /// Agents: zoo:NAME, run directories, agent files [default: the six of the zoo for
+    /// level 1]
     #[arg(value_name = "AGENT|RUN|zoo:NAME")]
     pub what: Vec<OsString>,
     /// Folder to write SCENARIO.gif to

@@ -111,13 +111,19 @@ pub fn run(args: &HighlightsArgs) -> Outcome {
         Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display()))
     })?;
     let what = match args.what.as_slice() {
-        [] => zoo::agents().iter().map(|(name, _)| format!("zoo:{name}").into()).collect(),
+        [] => first_levels(),
         given => given.to_vec(),
     };
     for agent in &what {
         one(args, agent)?;
     }
     if args.levels { levels(args, &what) } else { Ok(()) }
+}
+
+/// The zoo's agents of level 1, by their names.
+fn first_levels() -> Vec<OsString> {
+    let names = zoo::agents().into_iter().map(|(name, _)| name);
+    names.filter(|name| name.ends_with("Level1")).map(|name| format!("zoo:{name}").into()).collect()
 }
 
 fn most_bytes(args: &HighlightsArgs) -> u64 {
@@ -246,15 +252,25 @@ fn words(name: &str) -> String {
     words
 }
 
-/// The best moment of an agent in a level of its scenario, small.
+/// A policy by the place of its agent.
+fn policy_at(place: &Path) -> OsString {
+    if zoo::after(place.as_os_str(), "zoo:").is_some() {
+        return place.as_os_str().to_owned();
+    }
+    let mut policy = OsString::from("run:");
+    policy.push(place);
+    policy
+}
+
+/// The best moment of an agent in a level of its scenario, small. In the place of one of the zoo
+/// acts that of the level, if the zoo has it.
 fn level(args: &HighlightsArgs, place: &Path, id: EnvId) -> Result<Vec<Picture>, Failure> {
     let looks = EnvOptions::default();
     let policy = if zoo::after(place.as_os_str(), "zoo:").is_some() {
-        place.as_os_str().to_owned()
+        let own = zoo::find(OsString::from(format!("zoo:{id}")).as_os_str());
+        own.map_or_else(|_| place.as_os_str().to_owned(), |own| policy_at(&own))
     } else {
-        let mut policy = OsString::from("run:");
-        policy.push(place);
-        policy
+        policy_at(place)
     };
     let id = id.to_string();
     let mut performance = Performance::new(&id, &policy, &looks, Elsewhere::default(), args.seed)?;
