@@ -4,7 +4,8 @@
     python3 tools/keep_runs.py runs/campaign docs/results/campaign --hasard target/release/hasard --agents 11
 
 Of each run: settings, selection, closing episodes, curves with a row for each percent of the frames, the last heatmap of each level
-with its map, and `eval.jsonl` if there is one. Agents are kept of the seeds that `--agents` names, for they are most of the bytes.
+with its map, and `eval.jsonl` if there is one. Agents are kept of the seeds that `--agents` names, for they are most of the bytes
+(with `--algorithms` of those algorithms alone).
 Numbers have six significant digits. Runs without a selection are passed over and counted. A run whose copy is there already is left
 alone; files of episodes beside the runs (`random-*.jsonl`) are copied too.
 """
@@ -62,7 +63,9 @@ def keep(run, copy, hasard, with_agent):
     for name in WHOLE:
         (half / name).write_text(json.dumps(rounded(json.loads((run / name).read_text())), separators=(",", ":")) + "\n")
     for name in EPISODES:
-        if (run / name).exists():
+        # Where the last policy is the selected one, its episodes are those already kept.
+        same = name == EPISODES[1] and (run / EPISODES[0]).exists() and (run / name).read_bytes() == (run / EPISODES[0]).read_bytes()
+        if (run / name).exists() and not same:
             write_lines(half / name, lines(run / name))
     write_lines(half / "metrics.jsonl", thinned(lines(run / "metrics.jsonl")))
     if (run / "heatmaps.jsonl").exists():
@@ -82,6 +85,7 @@ def main(arguments=None):
     words.add_argument("copies", type=Path)
     words.add_argument("--hasard", default="hasard", help="the program, for --agents")
     words.add_argument("--agents", type=int, nargs="*", default=[], metavar="SEED", help="seeds whose agents are kept")
+    words.add_argument("--algorithms", nargs="*", default=[], metavar="NAME", help="of these alone, such as PPOPID")
     args = words.parse_args(arguments)
     if not args.runs.is_dir():
         sys.exit(f"{args.runs}: no such folder; name the folder that `hasard sweep` wrote")
@@ -94,7 +98,9 @@ def main(arguments=None):
         if not (run / "selected.json").exists():
             waiting += 1
             continue
-        keep(run, copy, args.hasard, json.loads(config.read_text())["seed"] in args.agents)
+        settings = json.loads(config.read_text())
+        wanted = not args.algorithms or settings["algorithm"] in args.algorithms
+        keep(run, copy, args.hasard, wanted and settings["seed"] in args.agents)
         kept += 1
     for file in args.runs.glob("*.jsonl"):
         args.copies.mkdir(parents=True, exist_ok=True)

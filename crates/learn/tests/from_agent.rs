@@ -3,7 +3,8 @@
 mod tiny;
 
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
-use hasard_learn::runs::agent_file::export;
+use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
+use hasard_learn::runs::run_directory::read_selection;
 use hasard_learn::runs::trainer::Start;
 use std::fs;
 use std::path::PathBuf;
@@ -58,6 +59,23 @@ fn a_run_begins_with_the_weights_of_a_file() {
     for at in [run, second] {
         fs::remove_dir_all(at).unwrap();
     }
+    fs::remove_file(file).unwrap();
+}
+
+/// The policy at the end is there too, with its own closing episodes.
+#[test]
+fn the_latest_checkpoint_becomes_a_file_with_the_word_of_the_last_policy() {
+    let (config, run, file) = trained("from-latest");
+    let longer = config.frames + 2 * config.frames_per_rollout();
+    let settings = vec![format!("frames={longer}")];
+    tiny::run(Start::Resume { settings }, &run).0.unwrap();
+    let latest = AgentFile::parse(&export_latest(&run).unwrap()).unwrap();
+    let said = latest.card.selection.unwrap();
+    let selection = read_selection(&run).unwrap();
+    assert_eq!((said.frames, selection.selected.frames), (longer, config.frames));
+    assert_eq!(said.closing, selection.last.map(|last| last.closing));
+    assert_eq!(AgentFile::read(&file).unwrap().card.selection.unwrap().frames, config.frames);
+    fs::remove_dir_all(run).unwrap();
     fs::remove_file(file).unwrap();
 }
 

@@ -244,6 +244,9 @@ pub struct MetricsArgs {
 pub struct ExportAgentArgs {
     /// Run directory
     pub run: PathBuf,
+    /// The latest checkpoint instead of the one that the run selected
+    #[arg(long)]
+    pub latest: bool,
     /// File to write, .agent; named after the environment if absent
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<PathBuf>,

@@ -4,7 +4,7 @@ use crate::args::ExportAgentArgs;
 use crate::failure::{Failure, Outcome};
 use crate::places;
 use crate::zoo::ENDING;
-use hasard_learn::runs::agent_file::{AgentFile, export};
+use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
 use hasard_media::files::WholeFile;
 use hasard_media::shell::quote;
 use serde_json::json;
@@ -13,7 +13,9 @@ use std::path::PathBuf;
 
 /// Runs the command.
 pub fn run(args: &ExportAgentArgs) -> Outcome {
-    let bytes = export(&places::run(args.run.as_os_str())?).map_err(Failure::bad)?;
+    let run = places::run(args.run.as_os_str())?;
+    let bytes = if args.latest { export_latest(&run) } else { export(&run) };
+    let bytes = bytes.map_err(Failure::bad)?;
     let file = AgentFile::parse(&bytes).map_err(Failure::bad)?;
     let name = file.card.config.env.id.trim_end_matches("-v0");
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.{ENDING}")));

@@ -136,6 +136,21 @@ pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
     pack(&config, selection, &checkpoint)
 }
 
+/// The file of the agent of a run's latest checkpoint; it says what the policy at the end of the
+/// run is worth, if that is the one.
+pub fn export_latest(run: &Path) -> Result<Vec<u8>, LearnError> {
+    let config = read_config(run)?;
+    let checkpoint = Store::new(run, 1)
+        .newest(&mut |_| {})?
+        .ok_or_else(|| LearnError::content(run, "no checkpoint was written yet; let it train"))?;
+    let last = read_selection(run).and_then(|selection| selection.last);
+    let selection = last.filter(|last| last.frames == checkpoint.progress.frames).map(|last| {
+        let closing = Some(last.closing.clone());
+        Candidate { closing, ..Candidate::new(last.frames, last.closing) }
+    });
+    pack(&config, selection, &checkpoint)
+}
+
 /// The file of the agent of a checkpoint.
 fn pack(
     config: &TrainConfig,
