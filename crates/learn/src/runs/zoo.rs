@@ -1,4 +1,4 @@
-//! Trained agents that are part of the program: one for level 1 of each scenario.
+//! Trained agents that are part of the program: one for each environment.
 //!
 //! Their files are in the folder `zoo` of the repository. Here they are bytes, so that an installed
 //! program or wheel has them wherever it is.
