@@ -1,6 +1,7 @@
 """Scripts of the repository that publishing needs."""
 
 import importlib.util
+import json
 import shutil
 import subprocess
 import sys
@@ -153,3 +154,45 @@ def test_the_published_trainer_is_timed_once_warm_and_only_where_it_lasts():
     assert trainer.rate_after(rows, 10, 10) == 2000
     assert trainer.rate_after(rows, 10, 60) is None
     assert trainer.rate_after(rows[:2], 10, 10) is None
+
+
+def campaign(folder, earned):
+    """Runs of PPO, PPOPID and PPOLag on one environment: PPO returns 12, random play 2; costs are half the budget but PPO's."""
+    for algorithm, returns in {"PPO": [12.0] * 3, **earned}.items():
+        for seed, one in enumerate(returns):
+            run = folder / f"RemedyRushLevel1-v0/{algorithm}/seed{seed}"
+            run.mkdir(parents=True)
+            cost = 10.0 if algorithm == "PPO" else 2.5
+            config = {"env": {"id": "RemedyRushLevel1-v0"}, "algorithm": algorithm, "seed": seed, "constraints": [{"budget": 5.0}]}
+            last = {"episode_return": {"mean": one, "half_width": 0.1}, "cost": {"mean": cost, "half_width": 0.5, "bootstrap": None}}
+            (run / "config.json").write_text(json.dumps(config))
+            (run / "selected.json").write_text(json.dumps({"last": last}))
+    rows = [json.dumps({"return": value}) for value in (1.0, 2.0, 3.0)]
+    (folder / "random-RemedyRushLevel1-v0-paper.jsonl").write_text("\n".join(rows))
+
+
+@pytest.mark.parametrize(
+    ("earned", "state", "difference"),
+    [
+        ({"PPOPID": [9.0, 8.0, 10.0], "PPOLag": [4.0, 5.0, 3.0]}, "holds", "0.50"),
+        ({"PPOPID": [4.0, 5.0, 3.0], "PPOLag": [9.0, 8.0, 10.0]}, "the contrary holds", "-0.50"),
+        ({"PPOPID": [4.0, 9.0, 3.0], "PPOLag": [9.0, 3.0, 4.0]}, "not decided", "0.00"),
+        ({"PPOPID": [9.0], "PPOLag": [4.0]}, "open: one seed has no interval", "0.50"),
+    ],
+)
+def test_a_hypothesis_of_the_campaign_is_answered_with_an_interval(tmp_path, earned, state, difference):
+    """By hand: returns of 4 and 9 are 0.2 and 0.7 of the way from random play's 2 to PPO's 12."""
+    campaign(tmp_path, earned)
+    answers = tool("campaign_answers")
+    found, text = answers.h1(answers.Campaign(tmp_path))
+    assert found == state, text
+    assert f"difference of the IQMs {difference}" in text
+    found, text = answers.h2(answers.Campaign(tmp_path))
+    assert "over in 1 of 1" in text and found == "open"
+
+
+def test_the_middle_half_counts_its_ends_by_their_share():
+    iqm = tool("campaign_answers").iqm
+    # Of four the middle two; of six the middle two and half of each neighbour: 1.5 of 3 are dropped at each end.
+    assert iqm([100.0, 1.0, 3.0, -50.0]) == 2.0
+    assert iqm([0.0, 2.0, 3.0, 5.0, 9.0, 99.0]) == (0.5 * 2 + 3 + 5 + 0.5 * 9) / 3

@@ -61,8 +61,8 @@ impl TextureLine {
     /// Horizontal texture position at a base column where the distance is known, 16.16.
     #[inline]
     pub fn at(&self, column: i64, distance: i64) -> i64 {
-        let gain = (self.gain + self.gain_step * column) >> 32;
-        ((self.along + distance * gain) >> 28).min(self.last).max(self.least) + self.offset
+        let gain = self.gain.wrapping_add(self.gain_step.wrapping_mul(column)) >> 32;
+        (self.along.wrapping_add(distance.wrapping_mul(gain)) >> 28).min(self.last).max(self.least) + self.offset
     }
 }
 

@@ -74,10 +74,13 @@ impl ViewLine {
         let [right, ahead] = along.map(|part| scaled(part, TextureLine::GAIN_BITS + VIEW_BITS));
         let before = -(start[0] * along[0] + start[1] * along[1]);
         let step = (i128::from(right) * i128::from(view.column_ray)) >> COLUMN_RAY_BITS;
-        // To the nearest 65536th of a texel: what begins right between two columns begins there.
+        // To the nearest 65536th of a texel: what begins right between two columns begins there. Of
+        // a line of next to no length the numbers do not fit and wrap; what is shown is held within
+        // the line's texels.
+        let along = scaled(before, TextureLine::ALONG_BITS);
         TextureLine {
-            along: scaled(before, TextureLine::ALONG_BITS) + (1 << (TextureLine::ALONG_BITS - 17)),
-            gain: ahead - right + (1 << (TextureLine::GAIN_BITS - 29)),
+            along: along.wrapping_add(1 << (TextureLine::ALONG_BITS - 17)),
+            gain: ahead.wrapping_sub(right).wrapping_add(1 << (TextureLine::GAIN_BITS - 29)),
             gain_step: step as i64,
             least: self.least_position(face, base_ends),
             last: face.last_position(),
