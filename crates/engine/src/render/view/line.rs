@@ -62,7 +62,8 @@ impl TextureLine {
     #[inline]
     pub fn at(&self, column: i64, distance: i64) -> i64 {
         let gain = self.gain.wrapping_add(self.gain_step.wrapping_mul(column)) >> 32;
-        (self.along.wrapping_add(distance.wrapping_mul(gain)) >> 28).min(self.last).max(self.least) + self.offset
+        (self.along.wrapping_add(distance.wrapping_mul(gain)) >> 28).min(self.last).max(self.least)
+            + self.offset
     }
 }
 
