@@ -4,7 +4,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 fn main() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../zoo");
+    // Asked for now, not when this was compiled: clones may share a target folder.
+    let crate_folder =
+        std::env::var_os("CARGO_MANIFEST_DIR").expect("Cargo names the crate's folder");
+    let folder = Path::new(&crate_folder).join("../../zoo");
     println!("cargo::rerun-if-changed={}", folder.display());
     let mut files: Vec<_> = std::fs::read_dir(&folder)
         .expect("the folder zoo is there")
