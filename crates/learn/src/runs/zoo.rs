@@ -9,7 +9,7 @@ use std::path::Path;
 pub const PREFIX: &str = "zoo:";
 
 /// Name and file of each, in the order of their names.
-const AGENTS: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/zoo.rs"));
+static AGENTS: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/zoo.rs"));
 
 /// Their names, in order.
 pub fn names() -> impl Iterator<Item = &'static str> {
