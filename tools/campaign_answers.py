@@ -84,10 +84,14 @@ def interval(strata, statistic):
     return drawn[int(0.025 * RESAMPLES)], drawn[int(0.975 * RESAMPLES) - 1]
 
 
-def verdict(strata, low, high):
+def answer(strata, statistic, words, more=""):
+    """What a statistic that is positive where the hypothesis holds says of it, and in which words."""
+    words = f"{words} {statistic(strata):.2f}"
     if min(map(len, strata.values())) < 2:
-        return "open: one seed has no interval"
-    return "holds" if low > 0 else "the contrary holds" if high < 0 else "not decided"
+        return "open: one seed has no interval", words + more
+    low, high = interval(strata, statistic)
+    state = "holds" if low > 0 else "the contrary holds" if high < 0 else "not decided"
+    return state, f"{words}, {low:.2f} to {high:.2f}{more}"
 
 
 def pairs(campaign, level, better, worse):
@@ -116,9 +120,8 @@ def h1(campaign):
         side = lambda name: iqm([value for key, values in drawn.items() if key[0] == name for value in values])
         return side("ppopid") - side("ppolag")
 
-    low, high = interval(strata, difference)
     left = f"; without {', '.join(without)}" if without else ""
-    return verdict(strata, low, high), f"difference of the IQMs {difference(strata):.2f}, {low:.2f} to {high:.2f}{left}"
+    return answer(strata, difference, "difference of the IQMs", left)
 
 
 def h2(campaign):
@@ -137,10 +140,11 @@ def h7(campaign):
     for level in (1, 2, 3):
         strata, without = pairs(campaign, level, "ppopid", "ppo")
         values = [value for key, seeds in strata.items() if key[0] == "ppopid" for value in seeds]
-        if values:
+        scenarios = len({env for _, env in strata}) + len(without)
+        if values and scenarios == 6:
             means[level] = (statistics.fmean(values), len(values), without)
     if set(means) != {1, 2, 3}:
-        return "open", "levels are missing"
+        return "open", "a level's six scenarios are not all there"
     text = "; ".join(
         f"level {level} {mean:.2f} ({count} runs{', without ' + ', '.join(left) if left else ''})" for level, (mean, count, left) in means.items()
     )
@@ -166,8 +170,7 @@ def by_budget(campaign):
         points = [(share, value) for (_, share), values in drawn.items() for value in values]
         return statistics.linear_regression(*zip(*points)).slope
 
-    low, high = interval(strata, slope)
-    return verdict(strata, low, high), f"slope {slope(strata):.2f} of the scale for a whole budget, {low:.2f} to {high:.2f}"
+    return answer(strata, slope, "slope, in scales a whole budget,")
 
 
 def not_yet(campaign):
