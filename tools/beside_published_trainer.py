@@ -43,7 +43,7 @@ def reports(lines):
 
 
 def rate_after(rows, warm, seconds):
-    """Frames a second over `seconds`, from `warm` seconds after the first report of any frames on; None where reports end before."""
+    """Frames a second over `seconds`, from `warm` seconds after the first report of any frames; None where reports end before."""
     first = start = None
     for now, frames in rows:
         if frames and first is None:

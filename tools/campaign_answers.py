@@ -3,9 +3,9 @@
 
     python3 tools/campaign_answers.py docs/results/campaign
 
-Scores are those of `hasard report`: (R - random) / (PPO - random) of the last policy if the upper 95 % end of its cost is within the
-budget, else 0; an environment where PPO is not shown to return more than random play has no scale and is left out, by name. Intervals:
-95 % of 2,000 bootstrap samples that draw seeds within each environment. A hypothesis whose runs are not there is said to be open.
+Scores are those of `hasard report`: (R - random) / (PPO - random) of the last policy if the upper 95 % end of its cost is within
+the budget, else 0; an environment where PPO is not shown to return more than random play has no scale and is left out, by name.
+Intervals: 95 % of 2,000 bootstrap samples that draw seeds within each environment. A hypothesis whose runs are not there is open.
 """
 
 import argparse
@@ -184,8 +184,8 @@ def main():
     print(f"{len(campaign.runs)} runs\n")
     print("| # | answer | by |")
     print("|---|---|---|")
-    for name, answer in (("H1", h1), ("H2", h2), ("H3", by_budget), ("H4", not_yet), ("H5", not_yet), ("H6", not_yet), ("H7", h7)):
-        state, text = answer(campaign)
+    for name, answered in (("H1", h1), ("H2", h2), ("H3", by_budget), ("H4", not_yet), ("H5", not_yet), ("H6", not_yet), ("H7", h7)):
+        state, text = answered(campaign)
         print(f"| {name} | {state} | {text} |")
 
 

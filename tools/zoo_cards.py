@@ -3,9 +3,9 @@
 
     python3 tools/zoo_cards.py target/release/hasard > tables.md
 
-Every agent plays 200 episodes, which no training saw, under the rules that it was trained with and under `tables`; beside its figures
-stand those of a random policy under the same rules, and the paper's for PPOPID and for people. The 95 % half-widths are Student's t,
-as `hasard eval` prints them.
+Every agent plays 200 episodes, which no training saw, under the rules that it was trained with and under `tables`; beside its
+figures stand those of a random policy under the same rules, and the paper's for PPOPID and for people. The 95 % half-widths are
+Student's t, as `hasard eval` prints them.
 """
 
 import argparse

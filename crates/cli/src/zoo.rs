@@ -1,5 +1,5 @@
-//! The zoo: trained agents by name. One for each environment is part of the program; more may lie in a
-//! folder.
+//! The zoo: trained agents by name. One for each environment is part of the program; more may lie
+//! in a folder.
 
 use crate::failure::Failure;
 use hasard_learn::runs::zoo::{PREFIX, names};

@@ -27,8 +27,9 @@
 
 use crate::grid::{Grid, Sweep};
 use crate::one_line;
+use crate::option::OptionValue;
 use crate::paper;
-use crate::table::{GRID_KEYS, algorithms, change, levels, scenarios};
+use crate::table::{GRID_KEYS, algorithms, change, levels, option_value, scenarios};
 use std::path::PathBuf;
 use toml::{Table, Value};
 
@@ -173,11 +174,10 @@ fn setting_value(value: &Value) -> Option<String> {
                 .collect();
             Some(format!("[{}]", items?.join(",")))
         }
-        Value::String(text) => Some(text.clone()),
-        Value::Integer(number) => Some(number.to_string()),
-        Value::Float(number) => Some(number.to_string()),
-        Value::Boolean(on) => Some(on.to_string()),
-        _ => None,
+        one => Some(match option_value(one)? {
+            OptionValue::Text(text) => text,
+            OptionValue::Switch(on) => on.to_string(),
+        }),
     }
 }
 

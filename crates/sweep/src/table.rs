@@ -59,7 +59,7 @@ pub(crate) fn levels(value: &Value) -> Result<Vec<u32>, String> {
     list(value, "levels", "1, 2 or 3", |v| v.as_integer().and_then(|n| u32::try_from(n).ok()))
 }
 
-fn option_value(value: &Value) -> Option<OptionValue> {
+pub(crate) fn option_value(value: &Value) -> Option<OptionValue> {
     match value {
         Value::String(text) => Some(OptionValue::Text(text.clone())),
         Value::Integer(number) => Some(OptionValue::Text(number.to_string())),

@@ -266,12 +266,9 @@ fn policy_at(place: &Path) -> OsString {
 /// acts that of the level, if the zoo has it.
 fn level(args: &HighlightsArgs, place: &Path, id: EnvId) -> Result<Vec<Picture>, Failure> {
     let looks = EnvOptions::default();
-    let policy = if zoo::after(place.as_os_str(), "zoo:").is_some() {
-        let own = zoo::find(OsString::from(format!("zoo:{id}")).as_os_str());
-        own.map_or_else(|_| place.as_os_str().to_owned(), |own| policy_at(&own))
-    } else {
-        policy_at(place)
-    };
+    let own = zoo::after(place.as_os_str(), "zoo:")
+        .and_then(|_| zoo::find(format!("zoo:{id}").as_ref()).ok());
+    let policy = policy_at(own.as_deref().unwrap_or(place));
     let id = id.to_string();
     let mut performance = Performance::new(&id, &policy, &looks, Elsewhere::default(), args.seed)?;
     let played = act(&mut performance, args.seed)?;
