@@ -14,6 +14,8 @@ URL = "https://example.org/somebody/hasard"
 
 
 def tool(name):
+    if str(ROOT / "tools") not in sys.path:
+        sys.path.append(str(ROOT / "tools"))  # where a script finds the others
     spec = importlib.util.spec_from_file_location(name, ROOT / f"tools/{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -115,10 +117,8 @@ def test_a_recipe_names_the_extra_that_has_all_that_it_imports(recipe):
         assert others <= {re.split(r"[\[>=<]", one)[0] for one in extras[named[1]]}
 
 
-def test_small_copies_of_runs_draw_the_same_tables(tmp_path):
+def test_small_copies_of_runs_draw_the_same_tables(tmp_path, hasard):
     """A real run of milliseconds, its copy, and the report of both."""
-    hasard = shutil.which("hasard") or Path(sys.executable).with_name("hasard")
-    assert Path(hasard).exists(), "the package brings the program"
 
     def run(*words):
         return subprocess.run([hasard, *words], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
@@ -130,7 +130,7 @@ def test_small_copies_of_runs_draw_the_same_tables(tmp_path):
     run(*"train RemedyRushLevel1 --frames 512 --eval-every 0 --out runs/unjudged".split(), *small.split())
     (tmp_path / "runs/random-RemedyRushLevel1-v0-paper.jsonl").write_text(run(*"rollout RemedyRushLevel1 --episodes 3 --json".split()))
     keep = tool("keep_runs").main
-    keep([str(tmp_path / "runs"), str(tmp_path / "copies"), "--hasard", str(hasard), "--agents", "3"])
+    keep([str(tmp_path / "runs"), str(tmp_path / "copies"), "--hasard", hasard, "--agents", "3"])
     copy = tmp_path / "copies/one/seed3"
     assert (copy / "selected.agent").stat().st_size > 1000
     assert not (tmp_path / "copies/unjudged").exists()
@@ -156,19 +156,34 @@ def test_the_published_trainer_is_timed_once_warm_and_only_where_it_lasts():
     assert trainer.rate_after(rows[:2], 10, 10) is None
 
 
-def campaign(folder, earned):
+@pytest.fixture
+def hasard():
+    program = shutil.which("hasard") or Path(sys.executable).with_name("hasard")
+    assert Path(program).exists(), "the package brings the program"
+    return str(program)
+
+
+def campaign(folder, hasard, earned, **env):
     """Runs of PPO, PPOPID and PPOLag on one environment: PPO returns 12, random play 2; costs are half the budget but PPO's."""
     for algorithm, returns in {"PPO": [12.0] * 3, **earned}.items():
         for seed, one in enumerate(returns):
-            run = folder / f"RemedyRushLevel1-v0/{algorithm}/seed{seed}"
+            run = folder / f"RemedyRushLevel1-v0/{algorithm}/{len(env)}/seed{seed}"
             run.mkdir(parents=True)
             cost = 10.0 if algorithm == "PPO" else 2.5
-            config = {"env": {"id": "RemedyRushLevel1-v0"}, "algorithm": algorithm, "seed": seed, "constraints": [{"budget": 5.0}]}
-            last = {"episode_return": {"mean": one, "half_width": 0.1}, "cost": {"mean": cost, "half_width": 0.5, "bootstrap": None}}
+            constraints = [{"term": None, "budget": 5.0}]
+            options = {"id": "RemedyRushLevel1-v0", "rules": "paper", **env}
+            config = {"env": options, "algorithm": algorithm, "seed": seed, "frames": 1000, "constraints": constraints}
+            earned_by, spent = ({"mean": mean, "half_width": half, "bootstrap": None} for mean, half in ((one, 0.1), (cost, 0.5)))
+            last = {"frames": 1000, "episodes": 200, "episode_return": earned_by, "cost": spent, "length": spent}
             (run / "config.json").write_text(json.dumps(config))
-            (run / "selected.json").write_text(json.dumps({"last": last}))
-    rows = [json.dumps({"return": value}) for value in (1.0, 2.0, 3.0)]
-    (folder / "random-RemedyRushLevel1-v0-paper.jsonl").write_text("\n".join(rows))
+            (run / "selected.json").write_text(json.dumps({"frames": 1000, "closing": None, "last": last}))
+            (run / "metrics.jsonl").write_text(json.dumps({"frames": 1000, "return_mean": 99.0, "cost_mean": 1.0}) + "\n")
+    rows = [
+        {"env": "RemedyRushLevel1-v0", "rules": "paper", "episode": k, "seed": k, "return": value, "cost": 1.0, "length": 525}
+        for k, value in enumerate((1.0, 2.0, 3.0))
+    ]
+    (folder / "random-RemedyRushLevel1-v0-paper.jsonl").write_text("\n".join(map(json.dumps, rows)))
+    return tool("campaign_runs").Campaign(folder, hasard)
 
 
 @pytest.mark.parametrize(
@@ -180,19 +195,54 @@ def campaign(folder, earned):
         ({"PPOPID": [9.0], "PPOLag": [4.0]}, "open: one seed has no interval", "0.50"),
     ],
 )
-def test_a_hypothesis_of_the_campaign_is_answered_with_an_interval(tmp_path, earned, state, difference):
+def test_a_hypothesis_of_the_campaign_is_answered_with_an_interval(tmp_path, hasard, earned, state, difference):
     """By hand: returns of 4 and 9 are 0.2 and 0.7 of the way from random play's 2 to PPO's 12."""
-    campaign(tmp_path, earned)
+    runs = campaign(tmp_path, hasard, earned)
     answers = tool("campaign_answers")
-    found, text = answers.h1(answers.Campaign(tmp_path))
+    found, text = answers.h1(runs)
     assert found == state, text
     assert f"difference of the IQMs {difference}" in text
-    found, text = answers.h2(answers.Campaign(tmp_path))
+    found, text = answers.h2(runs)
     assert "over in 1 of 1" in text and found == "open"
+    assert answers.h5(runs)[0] == answers.h6(runs)[0] == answers.h7(runs)[0] == "open"
+
+
+def test_inputs_are_compared_on_one_scale(tmp_path, hasard):
+    """An agent that sees depth as well scores on the scale of PPO that sees colours alone."""
+    campaign(tmp_path, hasard, {"PPO": [22.0] * 3, "PPOPID": [9.0] * 3}, observation="rgb+depth")
+    runs = campaign(tmp_path, hasard, {"PPOPID": [7.0] * 3})
+    env = "RemedyRushLevel1-v0"
+    assert [run.feasible for run in runs.of("PPOPID", env)] == [0.5] * 3
+    assert [run.feasible for run in runs.of("PPOPID", env, observation="rgb+depth")] == [0.7] * 3
+
+
+def test_the_tables_of_the_campaign_are_of_whole_seeds(tmp_path, hasard):
+    page = tool("campaign_page")
+    runs = campaign(tmp_path, hasard, {"PPOPID": [9.0, 8.0], "PPOLag": [4.0, 5.0, 3.0]})
+    text, seeds = page.of_level(runs, 1, ("PPO", "PPOLag", "PPOPID"))
+    # PPOPID has two of the three seeds, and so has the table.
+    assert seeds == [0, 1]
+    assert text.splitlines()[2:] == [
+        "| PPO | 12.00 @ 10.00 (0/2) |",
+        "| PPOLag | 4.50 @ 2.50 (2/2) |",
+        "| PPOPID | **8.50 @ 2.50** (2/2) |",
+        "| random | 2.00 @ 1.00 |",
+    ]
+    assert page.filled("a\n<!-- table: x -->\nold\n<!-- end -->\nb", {"x": "new"}) == "a\n<!-- table: x -->\n\nnew\n\n<!-- end -->\nb"
+    with pytest.raises(SystemExit, match="asks for a table 'y'"):
+        page.filled("<!-- table: y --><!-- end -->", {"x": "new"})
+
+
+def test_the_page_of_the_campaign_is_what_its_runs_make(hasard):
+    page, results = tool("campaign_page"), ROOT / "docs/results"
+    text = (results / "campaign.md").read_text()
+    assert text.count("<!-- table: ") > 3
+    made = page.blocks(tool("campaign_runs").Campaign(results / "campaign", hasard))
+    assert page.filled(text, made) == text, "run tools/campaign_page.py"
 
 
 def test_the_middle_half_counts_its_ends_by_their_share():
-    iqm = tool("campaign_answers").iqm
+    iqm = tool("campaign_runs").iqm
     # Of four the middle two; of six the middle two and half of each neighbour: 1.5 of 3 are dropped at each end.
     assert iqm([100.0, 1.0, 3.0, -50.0]) == 2.0
     assert iqm([0.0, 2.0, 3.0, 5.0, 9.0, 99.0]) == (0.5 * 2 + 3 + 5 + 0.5 * 9) / 3

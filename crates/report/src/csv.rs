@@ -5,6 +5,7 @@ use crate::escape::escape_csv;
 use crate::group::{Group, Source};
 use crate::published::published;
 use crate::run::Kept;
+use crate::sections::{Baselines, judged_by, judged_metric};
 use crate::statistics::{Estimate, interquartile_mean};
 use std::fmt::Write;
 
@@ -81,16 +82,20 @@ pub fn experiments_csv(groups: &[Group]) -> String {
     text
 }
 
-/// A row for each run.
+/// A row for each run. What begins with `judged` is what scores rest on, the scalar cost with the
+/// upper 95 % end; scores are empty where an end of their scale is missing.
 #[must_use]
-pub fn runs_csv(groups: &[Group]) -> String {
+pub fn runs_csv(groups: &[Group], baselines: &Baselines) -> String {
     let mut text = String::from(
-        "directory,env,algorithm,seed,options,frames,reports,wall_s,fps,return_mean,cost_mean,length_mean\n",
+        "directory,env,algorithm,seed,options,frames,reports,wall_s,fps,return_mean,cost_mean,length_mean,\
+         judged_by,judged_return,judged_cost,judged_cost_high,normalised_return,feasible_score\n",
     );
-    for run in groups.iter().flat_map(|group| &group.runs) {
+    let scored = groups.iter().flat_map(|group| group.runs.iter().zip(baselines.each(group)));
+    for (run, score) in scored {
         let options: Vec<String> =
             run.config.options.iter().map(|(key, value)| format!("{key} {value}")).collect();
         let last = |metric: &str| run.final_mean(metric);
+        let cost = judged_metric(run, "cost_mean");
         text += &line(&[
             run.path.display().to_string(),
             run.config.env.clone(),
@@ -104,6 +109,12 @@ pub fn runs_csv(groups: &[Group]) -> String {
             optional(last("return_mean")),
             optional(last("cost_mean")),
             optional(last("length_mean")),
+            judged_by(run).to_owned(),
+            optional(judged_metric(run, "return_mean").map(|one| one.mean)),
+            optional(cost.map(|one| one.mean)),
+            optional(cost.map(|one| one.high())),
+            optional(score.as_ref().map(|one| one.normalised)),
+            optional(score.as_ref().map(|one| one.feasible)),
         ]);
     }
     text

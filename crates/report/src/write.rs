@@ -6,6 +6,7 @@ use crate::group::Group;
 use crate::latex::{DOCUMENT, latex};
 use crate::markdown::{FIGURES, markdown};
 use crate::run::{Warning, discover};
+use crate::sections::Baselines;
 use crate::{csv, page, sections};
 use hasard_media::files::write_whole;
 use hasard_media::png;
@@ -64,7 +65,7 @@ fn write(paths: &[PathBuf], out: &Path, title: &str, for_papers: bool) -> Result
     write("index.html", page::page(&document).as_bytes())?;
     write("report.md", markdown(&document).as_bytes())?;
     write("experiments.csv", csv::experiments_csv(&groups).as_bytes())?;
-    write("runs.csv", csv::runs_csv(&groups).as_bytes())?;
+    write("runs.csv", csv::runs_csv(&groups, &Baselines::new(&found, &groups)).as_bytes())?;
     write("curves.csv", csv::curves_csv(&groups).as_bytes())?;
     if for_papers {
         write("tables.tex", latex(&document, FIGURES).as_bytes())?;

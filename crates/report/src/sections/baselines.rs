@@ -5,13 +5,13 @@ use crate::run::{Config, Found, Run, scenario_and_level};
 use crate::statistics::{Estimate, feasible_scores, mean, normalised};
 
 /// Scores of experiments, relative to our own random policy and PPO.
-pub(super) struct Baselines<'a> {
+pub(crate) struct Baselines<'a> {
     found: &'a Found,
     groups: &'a [Group],
 }
 
 /// A seed's score.
-pub(super) struct Score {
+pub(crate) struct Score {
     /// (R - random) / (PPO - random).
     pub normalised: f64,
     /// The same if the upper ends of its costs are within their budgets, else 0.
@@ -42,11 +42,13 @@ impl<'a> Baselines<'a> {
         Estimate::of(&same.map(|one| one.episode_return).collect::<Vec<_>>())
     }
 
-    /// Mean return of PPO on the same task, and what it is at least: by the intervals of its seeds'
-    /// episodes. Of several such experiments, those of the longest.
+    /// Mean return of PPO on the same task, judged as other seeds are, and what it is at least: by
+    /// the intervals of its seeds' episodes. Of several such experiments, those of the longest. What an agent sees is not part
+    /// of the task, so that inputs are compared on one scale: that of PPO with the usual
+    /// observation, where there is one.
     pub fn ppo(&self, group: &Group) -> Option<(f64, f64)> {
         let task = |config: &Config| {
-            let options = ["rules", "hard", "full_actions", "observation", "frame_skip"];
+            let options = ["rules", "hard", "full_actions", "frame_skip"];
             (
                 config.scenario.clone(),
                 config.level,
@@ -57,14 +59,14 @@ impl<'a> Baselines<'a> {
         let same = self.groups.iter().filter(|one| {
             one.config().algo.eq_ignore_ascii_case("PPO") && task(one.config()) == own
         });
-        let longest = same.max_by(|a, b| a.frames_span().1.total_cmp(&b.frames_span().1))?;
-        let returned = longest.estimate(longest.headline(), "return_mean")?.mean;
-        let below = |run: &Run| {
-            let episodes = run.selected.as_ref()?.last.as_ref()?.get("return_mean")?;
-            Some(episodes.mean - episodes.low())
-        };
-        let below: Vec<f64> = longest.runs.iter().filter_map(below).collect();
-        Some((returned, returned - mean(&below).unwrap_or(0.0)))
+        let usual = |one: &Group| !one.config().options.contains_key("observation");
+        let longest = same.max_by(|a, b| {
+            usual(a).cmp(&usual(b)).then(a.frames_span().1.total_cmp(&b.frames_span().1))
+        })?;
+        let judged: Vec<Estimate> =
+            longest.runs.iter().filter_map(|run| judged_metric(run, "return_mean")).collect();
+        let mean_of = |of: fn(&Estimate) -> f64| mean(&judged.iter().map(of).collect::<Vec<f64>>());
+        Some((mean_of(|one| one.mean)?, mean_of(Estimate::low)?))
     }
 
     /// What random play and PPO return: the ends of the scale. There is none where PPO has not
@@ -92,14 +94,19 @@ impl<'a> Baselines<'a> {
 
     /// The scores of an experiment's seeds; empty where an end of the scale is missing.
     pub fn scores(&self, group: &Group) -> Vec<Score> {
-        let Some((random, ppo)) = self.scale(group) else { return Vec::new() };
+        self.each(group).into_iter().flatten().collect()
+    }
+
+    /// The same, one for each run of the experiment, in their order.
+    pub fn each(&self, group: &Group) -> Vec<Option<Score>> {
+        let scale = self.scale(group);
         let score = |run: &Run| {
-            let judged = judged(run)?;
+            let (judged, (random, ppo)) = (judged(run)?, scale?);
             let normalised = normalised(judged.0, random, ppo)?;
             let (feasible, soft) = feasible_scores(normalised, &judged.1);
             Some(Score { normalised, feasible, soft })
         };
-        group.runs.iter().filter_map(score).collect()
+        group.runs.iter().map(score).collect()
     }
 
     /// What must be run for the experiments that have no scores, a command each.
@@ -136,27 +143,31 @@ impl<'a> Baselines<'a> {
 /// evaluation, or of the selected checkpoint's, or of the end of training (then without an
 /// interval).
 fn judged(run: &Run) -> Option<(f64, Vec<(f64, f64)>)> {
-    let last = |metric: &str| run.selected.as_ref()?.last.as_ref()?.get(metric);
-    let trained =
-        |metric: &str| run.final_mean(metric).map(|mean| Estimate { mean, half_width: None, n: 1 });
-    let judge = |value: &dyn Fn(&str) -> Option<Estimate>| {
-        let costs: Option<Vec<(f64, f64)>> = run
-            .config
-            .constraints
-            .iter()
-            .map(|one| Some((value(&one.metric())?.high(), one.budget)))
-            .collect();
-        Some((value("return_mean")?.mean, costs?))
-    };
-    judge(&last).or_else(|| judge(&|metric| run.evaluated(metric))).or_else(|| judge(&trained))
+    let costs = run.config.constraints.iter().map(|one| {
+        let cost = judged_metric(run, &one.metric())?;
+        Some((cost.high(), one.budget))
+    });
+    Some((judged_metric(run, "return_mean")?.mean, costs.collect::<Option<Vec<_>>>()?))
 }
 
+/// A metric of what a seed is judged by.
+pub(crate) fn judged_metric(run: &Run, metric: &str) -> Option<Estimate> {
+    match judged_by(run) {
+        LAST => run.selected.as_ref()?.last.as_ref()?.get(metric),
+        SELECTED => run.evaluated(metric),
+        _ => run.final_mean(metric).map(|mean| Estimate { mean, half_width: None, n: 1 }),
+    }
+}
+
+const LAST: &str = "last policy";
+const SELECTED: &str = "selected checkpoint";
+
 /// What a seed's score rests on, for people.
-pub(super) fn judged_by(run: &Run) -> &'static str {
+pub(crate) fn judged_by(run: &Run) -> &'static str {
     if run.selected.as_ref().is_some_and(|selected| selected.last.is_some()) {
-        "last policy"
+        LAST
     } else if run.evaluated("return_mean").is_some() {
-        "selected checkpoint"
+        SELECTED
     } else {
         "end of training"
     }

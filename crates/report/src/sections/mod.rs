@@ -23,8 +23,9 @@ mod witness;
 use crate::document::{Document, Section, count};
 use crate::group::Group;
 use crate::run::{Found, Warning};
-use baselines::Baselines;
 use std::collections::BTreeMap;
+
+pub(crate) use baselines::{Baselines, judged_by, judged_metric};
 
 /// Makes the report of what was found. `warnings` grows by what is noticed on the way.
 #[must_use]

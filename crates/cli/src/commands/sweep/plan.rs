@@ -172,8 +172,9 @@ fn evaluated(config: &TrainConfig) -> u64 {
         None if config.evaluates(0, config.frames) => 20,
         None => 0,
     };
-    // Candidates are confirmed a few times, and the selected checkpoint closes the run.
-    let further = if during > 0 { 4 * config.confirming_episodes() as u64 } else { 0 };
+    // Up to three candidates are confirmed as a rule, and the selected checkpoint closes the run.
+    let further =
+        if during > 0 { (during.min(3) + 1) * config.confirming_episodes() as u64 } else { 0 };
     (during * evaluation.episodes as u64 + further) * EPISODE_TICS
 }
 

@@ -1,0 +1,58 @@
+//! What a seed scores, as `runs.csv` has it: by its last policy, on the scale of its task.
+
+mod synthetic;
+
+use hasard_report::write_report;
+use synthetic::{Folder, Synthetic};
+
+/// By hand: random play returns 2 and PPO 12, so that 7 is half of the way; 4.5 with a half-width
+/// of 0.4 keeps a budget of 5, with 0.6 it does not.
+#[test]
+fn a_seed_scores_by_its_last_policy_whatever_it_sees() {
+    let folder = Folder::new("scores");
+    let runs = folder.0.join("runs");
+    let seeds = [
+        ("PPO", "", 1, 12.0, 40.0, 1.0),
+        ("PPO", ",\"observation\":\"segmented\"", 1, 22.0, 40.0, 1.0),
+        ("PPOPID", "", 1, 7.0, 4.5, 0.4),
+        ("PPOPID", "", 2, 7.0, 4.5, 0.6),
+        ("PPOPID", ",\"observation\":\"segmented\"", 1, 9.0, 4.5, 0.4),
+    ];
+    for (k, (algo, options, seed, episode_return, cost, half)) in seeds.into_iter().enumerate() {
+        let run = runs.join(k.to_string());
+        let env = "RemedyRushLevel1-v0";
+        Synthetic { env, algo, seed, frames: 1e6, reports: 20, options, end: (30.0, 9.0, 0.0) }
+            .write(&run);
+        let evaluation = format!(
+            "\"episodes\":200,\"episode_return\":{{\"mean\":{episode_return},\"half_width\":0.1}},\
+             \"cost\":{{\"mean\":{cost},\"half_width\":{half}}},\"length\":{{\"mean\":525,\"half_width\":0}}"
+        );
+        let selected = format!("{{\"frames\":1000000,\"closing\":null,\"last\":{{{evaluation}}}}}");
+        std::fs::write(run.join("selected.json"), selected).unwrap();
+    }
+    let episodes: String = [1.0, 2.0, 3.0]
+        .iter()
+        .map(|earned| {
+            format!(
+                "{{\"env\":\"RemedyRushLevel1-v0\",\"player\":\"random\",\"rules\":\"tables\",\"episode\":0,\"seed\":{earned},\
+                 \"return\":{earned},\"cost\":1,\"length\":525}}\n"
+            )
+        })
+        .collect();
+    std::fs::write(runs.join("random-RemedyRushLevel1-v0-tables.jsonl"), episodes).unwrap();
+    let out = folder.0.join("out");
+    write_report(&[runs], &out, "Scores").unwrap();
+    let text = std::fs::read_to_string(out.join("runs.csv")).unwrap();
+    let rows: Vec<&str> = text.lines().skip(1).collect();
+    let ends = |algo: &str| -> Vec<&str> {
+        let own = rows.iter().filter(|row| row.contains(&format!(",{algo},")));
+        own.map(|row| row.split_once("last policy,").expect("judged by the last policy").1)
+            .collect()
+    };
+    assert_eq!(ends("PPO"), ["22,40,41,2,0", "12,40,41,1,0"], "{text}");
+    assert_eq!(
+        ends("PPOPID"),
+        ["9,4.5,4.9,0.7,0.7", "7,4.5,4.9,0.5,0.5", "7,4.5,5.1,0.5,0"],
+        "{text}"
+    );
+}
