@@ -174,6 +174,13 @@ impl EnvConfig {
         Ok(Some(ActionSpace::together(&ids, rules, self.hard, self.full_actions)))
     }
 
+    /// The buttons of its actions; nothing for ids that are not registered, such as those of tests.
+    pub(crate) fn action_space(&self) -> Result<Option<ActionSpace>, LearnError> {
+        let (rules, joint) = (self.rule_set()?, self.joint_actions()?);
+        let alone = |id| ActionSpace::of(id, rules, self.hard, self.full_actions);
+        Ok(joint.or_else(|| self.env_id().ok().map(alone)))
+    }
+
     /// The environment of each task.
     fn env_ids(&self) -> Result<Vec<EnvId>, LearnError> {
         self.tasks().iter().map(EnvConfig::env_id).collect()

@@ -3,6 +3,7 @@
 
 pub mod agent;
 pub mod agent_file;
+mod buttons;
 pub mod calibration;
 pub mod checkpoint;
 pub mod checksum;

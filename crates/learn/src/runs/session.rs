@@ -16,6 +16,7 @@ use crate::networks::distribution::ActionShape;
 use crate::networks::{Actor, ImageShape, ModelShape};
 use crate::random::{Purpose, Stream};
 use crate::runs::agent_file::AgentFile;
+use crate::runs::buttons;
 use crate::runs::checkpoint::{Loaded, Progress};
 use crate::runs::watch::Watch;
 use crate::sampling::auxiliary::Auxiliary;
@@ -36,10 +37,12 @@ pub enum Beginning<'a> {
     Nothing,
     /// Everything of a checkpoint.
     Everything(Box<Loaded>),
-    /// Weights and normalisers of a checkpoint.
-    Weights(Box<Loaded>),
-    /// Weights and statistics of pixels of an agent's file, these its bytes.
-    Agent(Vec<u8>),
+    /// Weights and normalisers of a checkpoint, and the [order](super::buttons::order) of its
+    /// buttons.
+    Weights(Box<Loaded>, Option<Vec<usize>>),
+    /// Weights and statistics of pixels of an agent's file, these its bytes, and the order of its
+    /// buttons.
+    Agent(Vec<u8>, Option<Vec<usize>>),
     /// Weights, normalisers and counters of the lesson before.
     Lesson(&'a Session),
 }
@@ -186,10 +189,14 @@ impl Session {
         let mut states: Vec<Option<SamplerState>> = vec![None; shares.len()];
         match beginning {
             Beginning::Nothing => {}
-            Beginning::Weights(loaded) => loaded.restore_weights(&mut learner)?,
-            Beginning::Agent(bytes) => {
+            Beginning::Weights(loaded, order) => {
+                loaded.restore_weights(&mut learner)?;
+                order.iter().for_each(|order| buttons::reorder(&mut learner, order));
+            }
+            Beginning::Agent(bytes, order) => {
                 let file = AgentFile::parse(bytes).map_err(LearnError::Config)?;
                 file.begin(&mut learner)?;
+                order.iter().for_each(|order| buttons::reorder(&mut learner, order));
             }
             Beginning::Lesson(before) => {
                 learner.inherit(&before.learner)?;

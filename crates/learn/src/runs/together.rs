@@ -41,8 +41,8 @@ impl Word {
 enum Sent<L> {
     Nothing,
     Everything(L),
-    Weights(L),
-    Agent(Vec<u8>),
+    Weights(L, Option<Vec<usize>>),
+    Agent(Vec<u8>, Option<Vec<usize>>),
 }
 
 fn spoiled() -> LearnError {
@@ -86,8 +86,8 @@ pub fn invite(
     }
     let beginning = match beginning {
         Beginning::Everything(loaded) => Sent::Everything(&**loaded),
-        Beginning::Weights(loaded) => Sent::Weights(&**loaded),
-        Beginning::Agent(bytes) => Sent::Agent(bytes.clone()),
+        Beginning::Weights(loaded, order) => Sent::Weights(&**loaded, order.clone()),
+        Beginning::Agent(bytes, order) => Sent::Agent(bytes.clone(), order.clone()),
         Beginning::Nothing | Beginning::Lesson(_) => Sent::Nothing,
     };
     let text = serde_json::to_string(config).map_err(|_| spoiled())?;
@@ -113,8 +113,8 @@ impl Invitation {
         let beginning = match sent {
             Sent::Nothing => Beginning::Nothing,
             Sent::Everything(loaded) => Beginning::Everything(loaded),
-            Sent::Weights(loaded) => Beginning::Weights(loaded),
-            Sent::Agent(bytes) => Beginning::Agent(bytes),
+            Sent::Weights(loaded, order) => Beginning::Weights(loaded, order),
+            Sent::Agent(bytes, order) => Beginning::Agent(bytes, order),
         };
         alike(&team, &config)?;
         Ok(Invitation { team, config, beginning })

@@ -11,12 +11,13 @@ use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::networks::device::ComputeDevice;
 use crate::runs::agent_file::AgentFile;
+use crate::runs::buttons;
 use crate::runs::checkpoint::{Checkpoint, Loaded, Progress, Store};
 use crate::runs::evaluation::Evaluation;
 use crate::runs::examiner::Examiner;
 use crate::runs::heatmap::Heatmap;
 use crate::runs::report::Report;
-use crate::runs::run_directory::{RunDirectory, read_selection};
+use crate::runs::run_directory::{RunDirectory, read_config, read_selection};
 use crate::runs::selection::{Candidates, Selection};
 use crate::runs::session::{Beginning, MakeWorlds, Session};
 use crate::runs::together::{Word, invite};
@@ -164,8 +165,9 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
             config.check()?;
             ComputeDevice::of(&config)?;
             if AgentFile::is_at(&other) {
-                let (bytes, _) = AgentFile::read_whole(&other)?;
-                return new(config, Beginning::Agent(bytes));
+                let (bytes, file) = AgentFile::read_whole(&other)?;
+                let order = buttons::order(&config.env, &file.card.config.env)?;
+                return new(config, Beginning::Agent(bytes, order));
             }
             let loaded = Store::new(&other, 1).newest(hooks.warn)?;
             let loaded = loaded.ok_or_else(|| {
@@ -174,7 +176,8 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
                     "no checkpoint to take weights from is here; give a run's directory, an agent's file or zoo:NAME",
                 )
             })?;
-            new(config, Beginning::Weights(Box::new(loaded)))
+            let order = buttons::order(&config.env, &read_config(&other)?.env)?;
+            new(config, Beginning::Weights(Box::new(loaded), order))
         }
         Start::Resume { settings } => {
             let (run, before) = RunDirectory::open(directory)?;
