@@ -34,7 +34,14 @@ pub struct BarGroup {
 pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing {
     let (width, height) = size;
     let mut drawing = Drawing::new(width, height);
-    let (left, top, right, bottom) = (46.0, 26.0, width - 4.0, height - 22.0);
+    let (left, top, right) = (46.0, 26.0, width - 4.0);
+    let slots: f64 = groups.iter().map(|group| group.bars.len() as f64 + 0.8).sum();
+    let slot = ((right - left) / slots.max(1.0)).min(46.0);
+    // Names that do not fit side by side stand in two rows by turns.
+    let room = |group: &BarGroup| (group.bars.len() as f64 + 0.8) * slot;
+    let crowded = groups.iter().any(|group| text_width(&group.name, 11.0) > room(group));
+    let rows = if crowded { 2 } else { 1 };
+    let bottom = height - 9.0 - 13.0 * rows as f64;
     let title = Shape::Text {
         at: (left, 14.0),
         anchor: Anchor::Start,
@@ -56,10 +63,8 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
     let values = ticks(low, if high > low { high } else { low + 1.0 }, 4);
     let axis = Axis { from: values[0], to: values[values.len() - 1], start: bottom, end: top };
     draw_vertical_axis(&mut drawing, &axis, &values, left, right);
-    let slots: f64 = groups.iter().map(|group| group.bars.len() as f64 + 0.8).sum();
-    let slot = ((right - left) / slots.max(1.0)).min(46.0);
     let mut x = left + 0.4 * slot;
-    for group in groups {
+    for (index, group) in groups.iter().enumerate() {
         let from = x;
         for bar in &group.bars {
             let (zero, end) = (axis.place(0.0), axis.place(bar.value));
@@ -102,13 +107,13 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
                 opacity: 1.0,
             });
         }
-        // A name that does not fit over its group is cut; the pointer box has it whole.
-        let room = x - from + 0.8 * slot;
+        // A name that does not fit even so is cut; the pointer box has it whole.
         let mut name = group.name.clone();
-        while text_width(&name, 11.0) > room && name.chars().count() > 2 {
+        while text_width(&name, 11.0) > rows as f64 * room(group) && name.chars().count() > 2 {
             name.pop();
         }
-        drawing.text(((from + x) / 2.0, bottom + 15.0), Anchor::Middle, Ink::Muted, name);
+        let y = bottom + 15.0 + 13.0 * (index % rows) as f64;
+        drawing.text(((from + x) / 2.0, y), Anchor::Middle, Ink::Muted, name);
         x += 0.8 * slot;
     }
     if groups.iter().all(|group| group.bars.is_empty()) {

@@ -107,3 +107,30 @@ fn empty_and_immense_figures_do_no_harm() {
     );
     assert!(rasterise(&bars).is_some());
 }
+
+#[test]
+fn names_of_many_narrow_groups_stand_whole_in_two_rows() {
+    let names = ["PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O"];
+    let bar = || Bar {
+        name: "seed".into(),
+        value: 1.0,
+        interval: None,
+        ink: Ink::Series(0),
+        pale: false,
+    };
+    let groups = names.map(|name| BarGroup { name: name.into(), bars: vec![bar()], budget: None });
+    let drawn = |groups: &[BarGroup]| -> Vec<(String, f64)> {
+        let shapes = bar_panel("return", groups, (260.0, 190.0)).shapes;
+        let texts = shapes.into_iter().filter_map(|shape| match shape {
+            Shape::Text { text, at, .. } => Some((text, at.1)),
+            _ => None,
+        });
+        texts.filter(|(text, _)| names.contains(&text.as_str())).collect()
+    };
+    let all = drawn(&groups);
+    assert_eq!(all.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), names);
+    assert!(all[0].1 < all[1].1 && all[0].1 == all[2].1, "{all:?}");
+    // Where there is room, one row.
+    let few = drawn(&groups[..2]);
+    assert_eq!(few[0].1, few[1].1);
+}
