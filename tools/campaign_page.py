@@ -94,12 +94,15 @@ def small(campaign):
     of = campaign.of
     hard = {titled(env): env for env in first}
     shares = {f"{share:g} of the budget": lambda env, share=share: of("PPOLag", env, budget=share * campaign.budget[env]) for share in (0.5, 1.0, 1.5)}
+    scales = {f"{scale:g}": lambda env, scale=scale: of("PPOCost", env, scale=scale) for scale in (0.1, 0.5, 1.0, 2.0)}
     return {
         "algorithms": grid(
             "algorithm",
             budgets(campaign, [first[1], first[2]]),
             {name: lambda env, name=name: of(name, env) for name in ALL},
         ),
+        "trpo": grid("algorithm", budgets(campaign, first), {name: lambda env, name=name: of(name, env) for name in ALL[6:9]}),
+        "cost scale": grid("PPOCost's scale", budgets(campaign, first), scales),
         "safety bounds": grid("PPOLag aims at", budgets(campaign, first), shares),
         "hard": grid(
             "algorithm",

@@ -26,6 +26,8 @@ class Run:
         self.observation = str(env.get("observation", "rgb")).lower()
         self.curriculum = bool(config.get("curriculum"))
         self.budget = config["constraints"][0]["budget"]
+        # PPOCost's alone; null is what the rules say, 1 under `paper`.
+        self.scale = config.get("algorithm_settings", {}).get("penalty_scale") or 1.0
         self.earned, self.earned_half = last["episode_return"]["mean"], last["episode_return"]["half_width"]
         cost = last["cost"]
         self.cost, self.cost_high = cost["mean"], float(row["judged_cost_high"])
@@ -54,7 +56,8 @@ class Campaign:
 
     def of(self, algorithm, env, **wanted):
         """The seeds of an experiment; of the default task but for what is wanted."""
-        wanted = {"hard": False, "full": False, "curriculum": False, "observation": "rgb", "budget": self.budget.get(env), **wanted}
+        usual = {"hard": False, "full": False, "curriculum": False, "observation": "rgb", "scale": 1.0, "budget": self.budget.get(env)}
+        wanted = {**usual, **wanted}
         if wanted["hard"]:
             del wanted["budget"]  # A hard constraint has a budget of its own.
         here = (run for run in self.runs if run.algorithm == algorithm and run.env == env)

@@ -49,7 +49,7 @@ class Arguments:
 
     @property
     def hard_constraint(self) -> bool:
-        """Whether the first violation ends the episode."""
+        """Whether the constraint is the hard one."""
         return bool(self.world.get("hard_constraint", self.world.get("hard", False)))
 
     def without(self, where: str, *names: str) -> Arguments:

@@ -30,7 +30,7 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
             scenario, level, scenario_file: bound by the id.
             rules ("paper"): or "released", those of the published package, or "tables", those of the code behind the paper's tables.
             early_creatures (False): in Detonator's Dilemma 1 under "tables", the creatures that the first of the paper's runs met.
-            hard_constraint, or hard (False): the first violation ends the episode.
+            hard_constraint, or hard (False): a violation ends the episode; in Armament Burden it takes the burden and slows the agent.
             full_actions (False): all buttons, and two continuous axes.
             frame_skip (4): tics of 1/35 s that an action is held, 1 to 35.
             resolution, or size ("160x120"): "WxH" or (width, height), a list too, pixels, 64x48 to 1920x1080.

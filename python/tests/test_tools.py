@@ -201,7 +201,7 @@ def test_a_hypothesis_of_the_campaign_is_answered_with_an_interval(tmp_path, has
     answers = tool("campaign_answers")
     found, text = answers.h1(runs)
     assert found == state, text
-    assert f"difference of the IQMs {difference}" in text
+    assert f"IQM of the difference {difference}" in text
     found, text = answers.h2(runs)
     assert "over in 1 of 1" in text and found == "open"
     assert answers.h5(runs)[0] == answers.h6(runs)[0] == answers.h7(runs)[0] == "open"

@@ -23,7 +23,8 @@ pub struct EnvArgs {
     /// PPOLag), not of the later
     #[arg(long)]
     pub early_creatures: bool,
-    /// Hard constraint: the first violation ends the episode
+    /// Hard constraint: a violation ends the episode; in Armament Burden it takes the burden and
+    /// slows the agent
     #[arg(long)]
     pub hard: bool,
     /// The full action space instead of the simplified one

@@ -29,7 +29,7 @@ pub struct TrainArgs {
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Go on from the last checkpoint in the run directory, if there is
-    /// one; --frames, --seed, --threads and --set of the learning rate may differ from before
+    /// one; --frames, --seed, --threads and what docs/guide/runs.md lists may differ from before
     #[arg(long)]
     pub resume: bool,
     /// Frames between evaluations on episodes of their own, by which the run selects a checkpoint;
@@ -217,7 +217,7 @@ pub struct SettingsArgs {
     /// The algorithm
     #[arg(long, default_value = "PPOPID")]
     pub algo: String,
-    /// paper, released or quick
+    /// quick, paper, released or tables
     #[arg(long, default_value = "quick")]
     pub preset: String,
     /// One JSON object a setting

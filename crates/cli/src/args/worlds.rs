@@ -15,7 +15,7 @@ pub struct EnvsArgs {
     /// One JSON object a line
     #[arg(long)]
     pub json: bool,
-    /// Constants of the paper, or of the published package
+    /// Constants of the paper, of the published package, or of the code behind the paper's tables
     #[arg(long, value_enum, default_value_t = Rules::Paper)]
     pub rules: Rules,
     /// Takes a seed as every command does
@@ -174,7 +174,7 @@ pub struct ExportWadArgs {
     /// WAD file to write
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Constants of the paper, or of the published package
+    /// Constants of the paper, of the published package, or of the code behind the paper's tables
     #[arg(long, value_enum, default_value_t = Rules::Paper)]
     pub rules: Rules,
     /// The hard constraint's map

@@ -46,8 +46,7 @@ pub struct EnvConfig {
     /// Segmented in the published colours.
     #[serde(default, skip_serializing_if = "is_off")]
     pub published_colours: bool,
-    /// The file of the pictures that worlds are drawn with; `null` for the embedded set. Whoever
-    /// makes the worlds reads it.
+    /// The file of the pictures that worlds are drawn with; `null` for the embedded set.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "super::place")]
     pub iwad: Option<PathBuf>,
     /// Where the maps come from; `null` for the built-in ones. What makes the worlds reads them.

@@ -69,7 +69,7 @@ pub(super) fn sections(groups: &[Group]) -> Vec<Section> {
             slug: "hard",
             key: "hard",
             title: "Hard constraint",
-            text: "Any harm ends the episode (or costs as the scenario's hard rules say) against the budgeted constraint.",
+            text: "A violation ends the episode (in Armament Burden it takes the burden and slows the agent) (or costs as the scenario's hard rules say) against the budgeted constraint.",
             counts: &all,
         },
     ));
