@@ -56,3 +56,39 @@ fn a_seed_scores_by_its_last_policy_whatever_it_sees() {
         "{text}"
     );
 }
+
+/// Three of five lines count: one is of another environment, one of a seed that was there before.
+#[test]
+fn a_later_evaluation_counts_by_the_runs_own_episodes() {
+    let folder = Folder::new("own_episodes");
+    let run = folder.0.join("runs/one");
+    let (env, end) = ("RemedyRushLevel1-v0", (30.0, 9.0, 0.0));
+    Synthetic { env, algo: "PPOLag", seed: 1, frames: 1e6, reports: 20, options: "", end }
+        .write(&run);
+    let line = |env: &str, seed: u64, earned: f64| {
+        format!(
+            "{{\"env\":\"{env}\",\"seed\":{seed},\"rules\":\"tables\",\"return\":{earned},\"cost\":1,\"length\":525}}\n"
+        )
+    };
+    let lines = [
+        line(env, 1, 10.0),
+        line(env, 2, 20.0),
+        line(env, 2, 20.0),
+        line("VolcanicVentureLevel1-v0", 3, 99.0),
+        line(env, 4, 30.0),
+    ];
+    std::fs::write(run.join("eval.jsonl"), lines.concat()).unwrap();
+    let out = folder.0.join("out");
+    let written = write_report(&[folder.0.join("runs")], &out, "Own").unwrap();
+    let mut problems: Vec<&str> = written.warnings.iter().map(|one| one.problem.as_str()).collect();
+    problems.sort();
+    assert_eq!(
+        problems,
+        [
+            "1 of 5 episodes are of a seed that stands there before; left out",
+            "1 of 5 episodes are of another environment or other rules than the run's; left out"
+        ]
+    );
+    let text = std::fs::read_to_string(out.join("report.md")).unwrap();
+    assert!(text.contains("| 3 | 20.00 ± "), "{text}");
+}

@@ -153,6 +153,16 @@ fn named_settings(
         if let Value::Table(table) = value {
             named_settings(&name, table, found)?;
         } else {
+            // The sweep sets these itself, a run each.
+            let own = [
+                ("seed", "seeds"),
+                ("frames", "frames"),
+                ("algorithm", "algorithms"),
+                ("preset", "preset under [options]"),
+            ];
+            if let Some((_, key)) = own.iter().find(|(setting, _)| *setting == name) {
+                return Err(format!("`settings.{name}` would be the same for all runs; use {key}"));
+            }
             let text = setting_value(value).ok_or_else(|| {
                 format!("`settings.{name}` must be a text, a number, true, false or a list of them")
             })?;

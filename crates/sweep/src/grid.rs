@@ -3,7 +3,7 @@
 use crate::job::Job;
 use crate::one_line;
 use crate::option::OptionValue;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Most runs that one sweep may expand to; more is surely a slip of the pen.
@@ -61,7 +61,7 @@ impl Sweep {
 
     fn expand(&self) -> Result<Vec<Job>, String> {
         let mut jobs: Vec<(usize, Job)> = Vec::new();
-        let mut seen = BTreeSet::new();
+        let mut seen: BTreeMap<PathBuf, u64> = BTreeMap::new();
         for grid in &self.grids {
             let mut expanded = 1usize;
             for length in [grid.environments().len(), grid.algorithms.len(), grid.seeds.len()]
@@ -90,8 +90,16 @@ impl Sweep {
                             for (name, value) in &self.settings {
                                 job.add_option("set", &format!("{name}={value}"));
                             }
-                            if seen.insert(job.directory.clone()) {
-                                jobs.push((index, job));
+                            match seen.insert(job.directory.clone(), job.frames) {
+                                None => jobs.push((index, job)),
+                                Some(frames) if frames == job.frames => {}
+                                Some(frames) => {
+                                    return Err(format!(
+                                        "two grids have the run {} with {frames} and with {} frames; give them an option that differs, or one `frames`",
+                                        job.directory.display(),
+                                        job.frames
+                                    ));
+                                }
                             }
                         }
                     }

@@ -28,19 +28,28 @@ pub fn run(args: &ClaimArgs) -> Outcome {
     let rules = args.rules.map(hasard_envs::RuleSet::from);
     let under = rules.map_or(config.env.rules.as_str(), |rules| rules.name()).to_string();
     let id = config.env.id.trim_end_matches("-v0").to_string();
-    let stem = format!("{id}.{under}.{}", hasard_report::document::slug(&args.name));
+    let slug = hasard_report::document::slug(&args.name);
+    if slug.is_empty() {
+        return Err(Failure::bad(format!(
+            "--name '{}': has no letter or digit that a file's name can have; give it one of a to z or 0 to 9",
+            args.name
+        )));
+    }
+    let stem = format!("{id}.{under}.{slug}");
     let (file, path) =
         (format!("{stem}.{}", zoo::ENDING), args.out.join(format!("{stem}.{ENDING}")));
     // The agent first: what is claimed is measured from the very file that is given away.
-    let kept = args.out.join(&file);
-    let was_there = kept.exists();
-    write_whole(&kept, &bytes).map_err(Failure::bad)?;
-    let measured = measure(&kept, rules, args.episodes, cores()).map_err(|error| {
-        if !was_there {
-            let _ = std::fs::remove_file(&kept);
-        }
-        Failure::bad(error)
-    })?;
+    // Under another name until it is measured, so that an earlier claim stays whole until then.
+    let (kept, new) = (args.out.join(&file), args.out.join(format!("{file}.partial")));
+    write_whole(&new, &bytes).map_err(Failure::bad)?;
+    let measured = measure(&new, rules, args.episodes, cores()).map_err(Failure::bad);
+    let measured = measured.and_then(|measured| {
+        let named = std::fs::rename(&new, &kept);
+        let unnamed =
+            |error| Failure::bad(format!("{}: cannot be written: {error}", kept.display()));
+        named.map(|()| measured).map_err(unnamed)
+    });
+    let measured = measured.inspect_err(|_| drop(std::fs::remove_file(&new)))?;
     let how = args.how.clone().unwrap_or_else(|| command(&config));
     let claim = Claim::new(&args.name, &file, &bytes, &how, &measured);
     write_whole(&path, format!("{:#}\n", json!(claim)).as_bytes()).map_err(Failure::bad)?;

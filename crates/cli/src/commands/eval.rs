@@ -46,6 +46,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
     lines.hold_against(&config.constraints);
     let options = crate::settings::trained_options(&config.env, args.places.elsewhere())?;
     let options = EnvOptions { test_seeds: args.test_seeds, actions_of, ..options };
+    lines.played_under(&options);
     let player = Player {
         run: &run,
         which: if args.latest { Which::Latest } else { Which::Selected },

@@ -163,6 +163,23 @@ impl TrainConfig {
         Ok(config)
     }
 
+    /// The first setting that two runs of the same seed have learned by differently, with the value
+    /// of each; those of the machine, of reports and evaluations, and the length do not count. Of a
+    /// run that was changed on its way nothing is said.
+    #[must_use]
+    pub fn unlike(&self, other: &TrainConfig) -> Option<(String, Value, Value)> {
+        let elsewhere = ["frames", "device", "env.maps", "env.iwad", "learning.schedule_frames"];
+        let machine =
+            |name: &str| CHANGE_NOTHING.iter().chain(&elsewhere).any(|group| within(name, group));
+        if !self.changes.is_empty() || !other.changes.is_empty() {
+            return None;
+        }
+        let values = (serde_json::to_value(self).ok()?, serde_json::to_value(other).ok()?);
+        let mut found = Vec::new();
+        differences("", &values.0, &values.1, &mut found);
+        found.into_iter().find(|(name, ..)| name != "version" && !machine(name))
+    }
+
     /// Whether the run has had another seed since exactly `frames` frames.
     #[must_use]
     pub fn reseeded_at(&self, frames: u64) -> bool {
@@ -207,6 +224,20 @@ mod tests {
 
     fn all(settings: &[&str]) -> Vec<String> {
         settings.iter().map(|setting| (*setting).to_string()).collect()
+    }
+
+    #[test]
+    fn runs_are_unlike_by_what_they_learn_with() {
+        let one = config(Preset::Quick);
+        let with = |settings: &[&str]| one.with_all(&all(settings)).unwrap();
+        assert_eq!(one.unlike(&one), None);
+        assert_eq!(
+            one.unlike(&with(&["frames=99", "learning.threads=7", "evaluation.episodes=3"])),
+            None
+        );
+        let other = with(&["learning.gamma=0.5"]);
+        let (name, own, others) = one.unlike(&other).unwrap();
+        assert_eq!((name.as_str(), own, others), ("learning.gamma", 0.99.into(), 0.5.into()));
     }
 
     #[test]

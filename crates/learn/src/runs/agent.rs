@@ -19,7 +19,7 @@ use crate::networks::{Actor, ImageShape, ModelShape, Published};
 use crate::random::{Purpose, Stream};
 use crate::runs::agent_file::AgentFile;
 use crate::runs::checkpoint::{Loaded, Store};
-use crate::runs::run_directory::{go_on, read_config};
+use crate::runs::run_directory::{damaged_selection, go_on, read_config};
 use crate::sampling::privileged::Privileged;
 use crate::sampling::shaping::{Shaping, seen};
 
@@ -159,7 +159,17 @@ impl TrainedPolicy {
         }
         let config = read_config(directory)?;
         let store = Store::new(directory, 1);
-        let loaded = match (which, store.selected()) {
+        let selected = store.selected();
+        if which == Which::Selected {
+            let missing = (selected.is_none() && store.has_judged()).then(|| {
+                format!("{}: the checkpoint that it selected is gone", directory.display())
+            });
+            let instead = if selected.is_some() { "the best candidate" } else { "the latest" };
+            if let Some(problem) = damaged_selection(directory).or(missing) {
+                warn(format!("{problem}; {instead} is played"));
+            }
+        }
+        let loaded = match (which, selected) {
             (Which::Selected, Some(selected)) => Some(Loaded::read(&selected)?),
             _ => store.newest(warn)?,
         };

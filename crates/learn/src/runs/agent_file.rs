@@ -130,9 +130,12 @@ pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
         )
     })?;
     let checkpoint = Loaded::read(&best)?;
-    let selection = read_selection(run).map(|selection| selection.selected);
-    let selection =
-        selection.or_else(|| checkpoint.progress.all_candidates().ranked.into_iter().next());
+    // A run that went on since it was selected may have dropped that checkpoint: what is known of
+    // another says nothing of this one.
+    let frames = checkpoint.progress.frames;
+    let closed = read_selection(run).map(|selection| selection.selected);
+    let known = closed.into_iter().chain(checkpoint.progress.all_candidates().ranked);
+    let selection = known.into_iter().find(|one| one.frames == frames);
     pack(&config, selection, &checkpoint)
 }
 

@@ -30,6 +30,8 @@ const CALIBRATION: &str = "calibration.json";
 /// A run's directory, locked against a second trainer for as long as this value lives.
 pub struct RunDirectory {
     path: PathBuf,
+    /// The folder was made for the run, and the lock's file.
+    made: (bool, bool),
     /// The system gives the lock back when the process ends, however it ends.
     _lock: File,
 }
@@ -38,13 +40,23 @@ impl RunDirectory {
     /// Makes a new run's directory and writes its settings. A directory with a run in it is
     /// refused.
     pub fn create(path: &Path, config: &TrainConfig) -> Result<RunDirectory, LearnError> {
+        let made_folder = !path.exists();
         fs::create_dir_all(path).map_err(LearnError::file(path, "create"))?;
-        let directory = RunDirectory::lock(path)?;
-        if path.join("config.json").exists() {
-            let problem = "there is a run already; go on with --resume, or choose another directory with --out";
+        let mut directory = RunDirectory::lock(path)?;
+        directory.made.0 = made_folder;
+        let checkpoints = path.join("checkpoints");
+        let rests = fs::read_dir(&checkpoints).is_ok_and(|mut entries| entries.next().is_some());
+        let problem = if path.join("config.json").exists() {
+            "there is a run already; go on with --resume, or choose another directory with --out"
+        } else if rests || !directory.holds_no_row() {
+            "rows or checkpoints of a run are here, but not its config.json; bring it back, or choose another directory with --out"
+        } else {
+            ""
+        };
+        if !problem.is_empty() {
+            directory.unlock();
             return Err(LearnError::content(path, problem));
         }
-        let checkpoints = path.join("checkpoints");
         let made =
             fs::create_dir_all(&checkpoints).map_err(LearnError::file(&checkpoints, "create"));
         match made.and_then(|()| write_json(&path.join("config.json"), config)) {
@@ -66,7 +78,7 @@ impl RunDirectory {
     /// directory free. What was there before stays.
     pub fn withdraw(self) {
         // Nothing hangs on it: at worst the next attempt finds a run there already.
-        for name in ["config.json", "config.partial", "lock"] {
+        for name in ["config.json", "config.partial"] {
             let _ = fs::remove_file(self.path.join(name));
         }
         if self.holds_no_row() {
@@ -74,7 +86,17 @@ impl RunDirectory {
             tensorboard::files(&self.path).iter().for_each(|file| drop(fs::remove_file(file)));
         }
         let _ = fs::remove_dir(self.path.join("checkpoints"));
-        let _ = fs::remove_dir(&self.path);
+        self.unlock();
+    }
+
+    /// Leaves no lock and no empty folder behind that were not there before.
+    fn unlock(self) {
+        if self.made.1 {
+            let _ = fs::remove_file(self.path.join("lock"));
+        }
+        if self.made.0 {
+            let _ = fs::remove_dir(&self.path);
+        }
     }
 
     /// Whether nothing was learned yet that could be gone on with or looked at.
@@ -91,6 +113,7 @@ impl RunDirectory {
 
     fn lock(path: &Path) -> Result<RunDirectory, LearnError> {
         let file = path.join("lock");
+        let made = !file.exists();
         let lock = File::options()
             .create(true)
             .truncate(false)
@@ -98,7 +121,9 @@ impl RunDirectory {
             .open(&file)
             .map_err(LearnError::file(&file, "open"))?;
         match lock.try_lock() {
-            Ok(()) => Ok(RunDirectory { path: path.to_path_buf(), _lock: lock }),
+            Ok(()) => {
+                Ok(RunDirectory { path: path.to_path_buf(), made: (false, made), _lock: lock })
+            }
             Err(TryLockError::WouldBlock) => Err(LearnError::content(
                 path,
                 "another trainer works in this directory; wait for it, stop it, or choose another one with --out",
@@ -234,6 +259,14 @@ pub fn episode_row(env: &str, number: u64, episode: &Episode) -> Value {
 #[must_use]
 pub fn read_selection(path: &Path) -> Option<Selection> {
     SELECTION.iter().find_map(|name| serde_json::from_slice(&fs::read(path.join(name)).ok()?).ok())
+}
+
+/// What keeps the word of a run on what it selected from being read; nothing if it is whole, or if
+/// there is none.
+#[must_use]
+pub fn damaged_selection(path: &Path) -> Option<String> {
+    let file = SELECTION.iter().map(|name| path.join(name)).find(|file| file.exists())?;
+    read_selection(path).is_none().then(|| format!("{}: damaged or not to be read", file.display()))
 }
 
 /// The settings of the run in a directory.

@@ -181,8 +181,15 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
         }
         Start::Resume { settings } => {
             let (run, before) = RunDirectory::open(directory)?;
-            let loaded = Store::new(directory, 1).newest(hooks.warn)?;
+            let store = Store::new(directory, 1);
+            let loaded = store.newest(hooks.warn)?;
             let at = loaded.as_ref().map_or(0, |loaded| loaded.progress.frames);
+            if loaded.is_none() && store.has_judged() {
+                return Err(LearnError::content(
+                    directory,
+                    "the checkpoints that it would go on from are gone; bring its folder checkpoints back, or train anew with another --out",
+                ));
+            }
             if loaded.is_none() {
                 (hooks.warn)(format!(
                     "{}: no checkpoint was written yet; the run starts again",
@@ -191,7 +198,10 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
             }
             let config = before.resumed_with(&settings, at)?;
             ComputeDevice::of(&config)?;
-            let changed = config != before;
+            // Where nothing is left to learn, what would have been learned otherwise is no part of
+            // the run; only evaluations may still come.
+            let learns = loaded.is_none() || at < config.frames;
+            let changed = config != before && (learns || config.evaluation != before.evaluation);
             let beginning =
                 loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)));
             Ok(Begun { run, config, beginning, fresh: false, changed })

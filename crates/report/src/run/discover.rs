@@ -131,6 +131,7 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     rules: header.options.get("rules").cloned(),
                     hard: header.options.get("hard").map(|hard| hard == "true"),
                     length: Some(f64::from(header.steps)),
+                    seed: None,
                 };
                 let usual = |key: &str, value: &str| {
                     matches!((key, value), ("hard" | "full-actions", "false") | ("frame-skip", "4"))

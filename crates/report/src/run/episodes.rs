@@ -1,8 +1,9 @@
 //! Finished episodes, as `hasard rollout --json` and `hasard eval --json` print them and episode
 //! files keep them.
 
-use super::{Constraint, Warning};
+use super::{Config, Constraint, Warning};
 use serde_json::Value;
+use std::collections::HashSet;
 use std::path::Path;
 
 /// What is known of a finished episode.
@@ -24,6 +25,42 @@ pub struct EpisodeResult {
     pub hard: Option<bool>,
     /// Policy steps, if known.
     pub length: Option<f64>,
+    /// What it began from, if the line says.
+    pub seed: Option<u64>,
+}
+
+/// The episodes of a later `hasard eval` that are of a run's own task, each seed once; a line says
+/// how many of a file are not.
+pub fn own_episodes(
+    episodes: Vec<EpisodeResult>,
+    config: &Config,
+    path: &Path,
+    warnings: &mut Vec<Warning>,
+) -> Vec<EpisodeResult> {
+    let all = episodes.len();
+    let mut seen = HashSet::new();
+    let own = |one: &EpisodeResult| {
+        (one.env.is_empty() || one.env == config.env)
+            && one
+                .rules
+                .as_deref()
+                .is_none_or(|rules| config.rules().is_none_or(|own| own == rules))
+            && one.hard.is_none_or(|hard| hard == config.hard())
+    };
+    let mut kept: Vec<EpisodeResult> = episodes.into_iter().filter(own).collect();
+    let others = all - kept.len();
+    kept.retain(|one| one.seed.is_none_or(|seed| seen.insert(seed)));
+    let again = all - others - kept.len();
+    for (count, what) in [
+        (others, "of another environment or other rules than the run's"),
+        (again, "of a seed that stands there before"),
+    ] {
+        if count > 0 {
+            let problem = format!("{count} of {all} episodes are {what}; left out");
+            warnings.push(Warning { path: path.to_owned(), line: 0, problem });
+        }
+    }
+    kept
 }
 
 impl EpisodeResult {
@@ -66,6 +103,7 @@ pub fn read_episode_lines(
                 rules: value.get("rules").and_then(Value::as_str).map(String::from),
                 hard: value.get("hard").and_then(Value::as_bool),
                 length: number("length"),
+                seed: value.get("seed").and_then(Value::as_u64),
             }),
             _ => warnings.push(Warning {
                 path: path.to_owned(),

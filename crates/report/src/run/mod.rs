@@ -16,6 +16,7 @@ pub use calibration::{Calibration, read_calibration};
 pub use config::{Config, TOLD, default_budget, scenario_and_level};
 pub use constraint::{Constraint, Kept};
 pub use discover::{Found, Origin, PlayerKey, discover};
+use episodes::own_episodes;
 pub use episodes::{EpisodeResult, read_episode_lines};
 pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
@@ -99,7 +100,14 @@ impl Run {
                 if evaluation.is_empty() && name.starts_with(beginning) && name.ends_with(".jsonl")
                 {
                     match read_text(&file) {
-                        Ok(text) => evaluation.extend(read_episode_lines(&text, &file, warnings)),
+                        Ok(text) => {
+                            let read = read_episode_lines(&text, &file, warnings);
+                            evaluation.extend(if beginning == "eval" {
+                                own_episodes(read, &config, &file, warnings)
+                            } else {
+                                read
+                            });
+                        }
                         Err(warning) => warnings.push(warning),
                     }
                 }

@@ -139,6 +139,7 @@ mod tests {
             rules: None,
             hard: None,
             length: Some(525.0),
+            seed: None,
         };
         let mean = |mean: f64| Estimate { mean, half_width: Some(1.0), n: 2 };
         let part = |cost: f64| Evaluation {

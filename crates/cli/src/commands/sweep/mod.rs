@@ -8,6 +8,7 @@ use crate::args::SweepArgs;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::{self, Manner};
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
+use hasard_learn::runs::run_directory::read_config;
 use hasard_sweep::{Event, Job, OptionValue, Stop, Summary, Sweep, paper, run_jobs};
 use plan::Plan;
 use progress::Progress;
@@ -36,6 +37,7 @@ pub fn run(args: &SweepArgs) -> Outcome {
         configs = settings(&jobs)?;
     }
     let pairs: Vec<(Job, TrainConfig)> = jobs.iter().cloned().zip(configs).collect();
+    pairs.iter().try_for_each(|(job, config)| fits(job, config))?;
     if args.dry_run {
         return list(args, &pairs, sweep.parallel);
     }
@@ -58,6 +60,18 @@ pub fn run(args: &SweepArgs) -> Outcome {
     }
     let (jobs, rate) = (pairs.into_iter().map(|(job, _)| job).collect::<Vec<_>>(), plan.rate);
     execute(args, &sweep, &jobs, rate)
+}
+
+/// Refuses a run that lies where the sweep would train one by other settings.
+fn fits(job: &Job, config: &TrainConfig) -> Outcome {
+    let Ok(found) = read_config(&job.directory) else { return Ok(()) };
+    match found.unlike(&config.clone().begun()) {
+        None => Ok(()),
+        Some((name, was, wanted)) => Err(Failure::bad(format!(
+            "{}: was trained with {name} = {was}, the sweep asks for {wanted}; choose another `out`, or move that run away",
+            job.directory.display()
+        ))),
+    }
 }
 
 /// Runs the jobs, saying how they go.

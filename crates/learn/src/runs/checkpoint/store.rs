@@ -7,6 +7,7 @@ use crate::runs::checkpoint::write::{Checkpoint, write_through};
 use crate::runs::run_directory::read_selection;
 use crate::runs::selection::Candidates;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 pub(super) fn remove(path: &Path) -> Result<(), LearnError> {
@@ -47,6 +48,13 @@ impl Store {
             .ok()
             .and_then(|progress| Some(self.best_of(progress.candidates.ranked.first()?.frames)));
         Some(known.filter(|path| path.is_dir()).unwrap_or(newest))
+    }
+
+    /// Whether the run has judged a checkpoint, so that one must have been written.
+    #[must_use]
+    pub fn has_judged(&self) -> bool {
+        let closed = self.directory.parent().and_then(read_selection);
+        closed.is_some() || !self.numbered("best_").is_empty()
     }
 
     /// All checkpoints to go on from, newest first.
@@ -143,6 +151,11 @@ impl Store {
 
     /// The newest whole checkpoint; `warn` gets a line for each damaged one that is passed over.
     pub fn newest(&self, warn: &mut dyn FnMut(String)) -> Result<Option<Loaded>, LearnError> {
+        if let Err(error) = fs::read_dir(&self.directory)
+            && error.kind() != ErrorKind::NotFound
+        {
+            return Err(LearnError::file(&self.directory, "read")(error));
+        }
         let all = self.all();
         for path in &all {
             match Loaded::read(path) {

@@ -1,0 +1,123 @@
+//! What is refused or has nothing to do leaves runs, claims and files of the user as they were.
+
+mod folder;
+
+use folder::Folder;
+
+const SMALL: &str = "--algo PPOLag --envs 2 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
+                     --set episode_steps=8 --observation grey --size 64x48 --quiet --set evaluation.episodes=1 \
+                     --set evaluation.confirming_episodes=2";
+
+/// A folder with a finished run.
+fn trained(name: &str) -> Folder {
+    let folder = Folder::new(name);
+    folder.ok(&format!(
+        "train RemedyRushLevel1 {SMALL} --frames 128 --eval-every 64 --out run --seed 1"
+    ));
+    folder
+}
+
+fn text(folder: &Folder, file: &str) -> String {
+    String::from_utf8(folder.read(file)).unwrap()
+}
+
+#[test]
+fn a_run_that_cannot_begin_leaves_what_was_there() {
+    let folder = Folder::new("withdrawn");
+    std::fs::create_dir(folder.0.join("mine")).unwrap();
+    folder.file("mine/lock", b"mine");
+    folder.refused(&format!(
+        "train RemedyRushLevel1 {SMALL} --frames 64 --out mine --init-from nowhere"
+    ));
+    assert_eq!(folder.read("mine/lock"), b"mine");
+    // A folder that was made for the run goes with it.
+    folder.refused(&format!(
+        "train RemedyRushLevel1 {SMALL} --frames 64 --out new --init-from nowhere"
+    ));
+    assert!(!folder.0.join("new").exists());
+}
+
+#[test]
+fn a_new_run_does_not_begin_among_the_rows_of_another() {
+    let folder = trained("among_rows");
+    std::fs::remove_file(folder.0.join("run/config.json")).unwrap();
+    let rows = text(&folder, "run/metrics.jsonl");
+    let said =
+        folder.refused(&format!("train RemedyRushLevel1 {SMALL} --frames 64 --out run --seed 9"));
+    assert!(said.contains("config.json") && said.contains("--out"), "{said}");
+    assert_eq!(text(&folder, "run/metrics.jsonl"), rows);
+}
+
+#[test]
+fn a_run_whose_checkpoints_are_gone_is_not_begun_again() {
+    let folder = trained("checkpoints_gone");
+    let rows = text(&folder, "run/metrics.jsonl");
+    std::fs::remove_dir_all(folder.0.join("run/checkpoints")).unwrap();
+    let said = folder.refused("train RemedyRushLevel1 --resume --out run --frames 256 --quiet");
+    assert!(said.contains("checkpoints") && said.contains("gone"), "{said}");
+    assert_eq!(text(&folder, "run/metrics.jsonl"), rows);
+}
+
+#[test]
+fn a_finished_run_keeps_the_seed_that_it_was_trained_with() {
+    let folder = trained("finished_seed");
+    let config = text(&folder, "run/config.json");
+    folder.ok("train RemedyRushLevel1 --resume --out run --seed 5 --quiet");
+    assert_eq!(text(&folder, "run/config.json"), config);
+}
+
+#[test]
+fn an_evaluation_says_that_the_selected_checkpoint_is_gone() {
+    let folder = trained("selected_gone");
+    for entry in std::fs::read_dir(folder.0.join("run/checkpoints")).unwrap().flatten() {
+        if entry.file_name().to_string_lossy().starts_with("best_") {
+            std::fs::remove_dir_all(entry.path()).unwrap();
+        }
+    }
+    let (_, said) = folder.both("eval run --episodes 1");
+    assert!(said.contains("selected is gone; the latest is played"), "{said}");
+    folder.file("run/selected.json", b"{\"frames\":");
+    let (_, said) = folder.both("eval run --episodes 1");
+    assert!(said.contains("selected.json: damaged"), "{said}");
+}
+
+#[test]
+fn a_refused_claim_leaves_the_earlier_one() {
+    let folder = trained("claim_kept");
+    folder.ok("claim run --episodes 2 -o board");
+    folder.ok(&format!(
+        "train RemedyRushLevel1 {SMALL} --frames 128 --eval-every 64 --out other --frame-skip 8"
+    ));
+    folder.refused("claim other --episodes 2 -o board");
+    folder.ok("verify board");
+    assert_eq!(
+        std::fs::read_dir(folder.0.join("board")).unwrap().count(),
+        2,
+        "nothing half written"
+    );
+    let said = folder.refused("claim run --episodes 2 -o board --name 日本");
+    assert!(said.contains("--name"), "{said}");
+}
+
+#[test]
+fn a_sweep_does_not_take_a_run_of_other_settings_for_its_own() {
+    let folder = Folder::new("sweep_settings");
+    let sweep = |more: &str| {
+        format!(
+            "scenarios = [\"RemedyRush\"]\nalgorithms = [\"PPO\"]\nframes = 64\nout = \"runs\"\n[options]\nenvs = 2\nthreads = 1\n\
+             size = \"64x48\"\neval-every = 64\n[settings]\nsampling.rollout = 8\nnetwork.dense = [32]\nnetwork.recurrent = 32\n\
+             evaluation.episodes = 1\nevaluation.confirming_episodes = 2\n{more}"
+        )
+    };
+    folder.file("s.toml", sweep("").as_bytes());
+    folder.ok("sweep s.toml");
+    folder.ok("sweep s.toml");
+    folder.file("s.toml", sweep("learning.gamma = 0.5\n").as_bytes());
+    let said = folder.refused("sweep s.toml");
+    assert!(said.contains("learning.gamma = 0.99") && said.contains("asks for 0.5"), "{said}");
+    folder.file("s.toml", sweep("seed = 3\n").as_bytes());
+    assert!(folder.refused("sweep s.toml").contains("use seeds"));
+    let grids = sweep("[[grid]]\nframes = 64\n[[grid]]\nframes = 128\n");
+    folder.file("s.toml", grids.as_bytes());
+    assert!(folder.refused("sweep s.toml").contains("128 frames"));
+}
