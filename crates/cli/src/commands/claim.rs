@@ -2,6 +2,7 @@
 //! check.
 
 use crate::args::ClaimArgs;
+use crate::commands::train_again;
 use crate::failure::{Failure, Outcome};
 use crate::settings::cores;
 use crate::zoo;
@@ -50,7 +51,7 @@ pub fn run(args: &ClaimArgs) -> Outcome {
         named.map(|()| measured).map_err(unnamed)
     });
     let measured = measured.inspect_err(|_| drop(std::fs::remove_file(&new)))?;
-    let how = args.how.clone().unwrap_or_else(|| command(&config));
+    let how = args.how.clone().unwrap_or_else(|| train_again::command(&config));
     let claim = Claim::new(&args.name, &file, &bytes, &how, &measured);
     write_whole(&path, format!("{:#}\n", json!(claim)).as_bytes()).map_err(Failure::bad)?;
     let verified = format!("hasard verify {}", hasard_media::shell::quote(&path));
@@ -70,21 +71,6 @@ pub fn run(args: &ClaimArgs) -> Outcome {
         );
     }
     Ok(())
-}
-
-/// The command that trains such an agent.
-fn command(config: &hasard_learn::config::TrainConfig) -> String {
-    let mut words = format!(
-        "hasard train {} --algo {} --preset {} --frames {} --seed {}",
-        config.env.id, config.algorithm, config.preset, config.frames, config.seed
-    );
-    if config.env.rules != "paper" {
-        words += &format!(" --rules {}", config.env.rules);
-    }
-    if config.env.hard {
-        words += " --hard";
-    }
-    words
 }
 
 /// The claims of a folder, by name; one without any is refused.

@@ -25,4 +25,5 @@ pub mod site;
 pub mod sweep;
 pub mod trace;
 pub mod train;
+mod train_again;
 pub mod verify;

@@ -274,7 +274,7 @@ fn describe(config: &TrainConfig, directory: &Path) {
 
 /// The command with the rules that its preset belongs to, unless it names others: what made the
 /// paper's tables is both.
-fn with_rules(args: &TrainArgs, typed: &ArgMatches) -> TrainArgs {
+pub(super) fn with_rules(args: &TrainArgs, typed: &ArgMatches) -> TrainArgs {
     let mut args = args.clone();
     let given = typed.value_source("rules") == Some(ValueSource::CommandLine);
     if !given && args.preset.parse().is_ok_and(|preset: Preset| preset == Preset::Tables) {

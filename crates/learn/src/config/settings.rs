@@ -168,16 +168,25 @@ impl TrainConfig {
     /// run that was changed on its way nothing is said.
     #[must_use]
     pub fn unlike(&self, other: &TrainConfig) -> Option<(String, Value, Value)> {
+        self.all_unlike(other).into_iter().next()
+    }
+
+    /// All such settings.
+    #[must_use]
+    pub fn all_unlike(&self, other: &TrainConfig) -> Vec<(String, Value, Value)> {
         let elsewhere = ["frames", "device", "env.maps", "env.iwad", "learning.schedule_frames"];
         let machine =
             |name: &str| CHANGE_NOTHING.iter().chain(&elsewhere).any(|group| within(name, group));
-        if !self.changes.is_empty() || !other.changes.is_empty() {
-            return None;
-        }
-        let values = (serde_json::to_value(self).ok()?, serde_json::to_value(other).ok()?);
         let mut found = Vec::new();
-        differences("", &values.0, &values.1, &mut found);
-        found.into_iter().find(|(name, ..)| name != "version" && !machine(name))
+        if let (true, Ok(own), Ok(others)) = (
+            self.changes.is_empty() && other.changes.is_empty(),
+            serde_json::to_value(self),
+            serde_json::to_value(other),
+        ) {
+            differences("", &own, &others, &mut found);
+        }
+        found.retain(|(name, ..)| name != "version" && !machine(name));
+        found
     }
 
     /// Whether the run has had another seed since exactly `frames` frames.

@@ -1,0 +1,109 @@
+//! The command that trains a run again, from its settings.
+
+use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
+use hasard_media::shell::quote;
+use serde_json::json;
+use std::path::Path;
+
+/// The command that begins a run with these settings, but for those of machine, reports and
+/// evaluations, and for an agent that it began with: settings do not know of one.
+pub fn command(config: &TrainConfig) -> String {
+    let (env, usual) = (&config.env, EnvConfig::new(&config.env.id));
+    let mut words = vec![format!(
+        "hasard train {} --algo {} --preset {} --frames {} --seed {}",
+        env.id, config.algorithm, config.preset, config.frames, config.seed
+    )];
+    // Said always where the preset's own rules might be others.
+    if env.rules != usual.rules || config.preset == Preset::Tables {
+        words.push(format!("--rules {}", env.rules));
+    }
+    for (flag, is_on) in [
+        ("early-creatures", env.early_creatures),
+        ("hard", env.hard),
+        ("full-actions", env.full_actions),
+        ("published-depth", env.published_depth),
+        ("published-colours", env.published_colours),
+    ] {
+        words.extend(is_on.then(|| format!("--{flag}")));
+    }
+    for (name, own, usual) in [
+        ("frame-skip", env.frame_skip.to_string(), usual.frame_skip.to_string()),
+        (
+            "size",
+            format!("{}x{}", env.size.0, env.size.1),
+            format!("{}x{}", usual.size.0, usual.size.1),
+        ),
+        ("observation", env.observation.clone(), usual.observation),
+        ("frame-stack", env.frame_stack.to_string(), usual.frame_stack.to_string()),
+    ] {
+        words.extend((own != usual).then(|| format!("--{name} {own}")));
+    }
+    if !config.curriculum.is_empty() {
+        let lessons = config.curriculum.iter().map(|one| format!("{}:{}", one.level, one.frames));
+        words.push(format!("--curriculum {}", lessons.collect::<Vec<_>>().join(",")));
+    }
+    // What the preset makes of the same environment.
+    if let Ok(preset) = TrainConfig::new(config.algorithm, config.preset, env.clone()) {
+        let plain = TrainConfig { seed: config.seed, frames: config.frames, ..preset }.begun();
+        if plain.constraints != config.constraints {
+            words.extend(config.constraints.iter().map(|one| match &one.term {
+                None => format!("--safety-budget {}", one.budget),
+                Some(term) => format!("--safety-budget {term}={}", one.budget),
+            }));
+        }
+        if config.learning.schedule_frames != Some(config.frames) {
+            let frames = json!(config.learning.schedule_frames);
+            words.push(format!("--set learning.schedule_frames={frames}"));
+        }
+        for (name, _, value) in plain.all_unlike(config) {
+            match name.as_str() {
+                "constraints" | "curriculum" => {}
+                "constraint_statistic" => {
+                    words.push(format!("--constraint-statistic {}", config.constraint_statistic));
+                }
+                "sampling.lanes" => words.push(format!("--envs {value}")),
+                "sampling.synchronous" => words.push("--async".into()),
+                "learning.portable" => words.push("--portable".into()),
+                _ => words.push(format!("--set {}", quote(Path::new(&format!("{name}={value}"))))),
+            }
+        }
+    }
+    words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Cli, Command};
+    use crate::commands::train::{configuration, with_rules};
+    use crate::failure::Failure;
+    use clap::{CommandFactory, FromArgMatches};
+
+    fn config(line: &str) -> Result<TrainConfig, Failure> {
+        let line = format!("hasard train ArmamentBurdenLevel1-v0 {line}");
+        let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
+        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
+            panic!("not a training")
+        };
+        configuration(&with_rules(&args, matches.subcommand_matches("train").unwrap()))
+    }
+
+    /// What it writes, typed again, gives the same settings.
+    #[test]
+    fn the_command_of_a_run_trains_it_again() {
+        for line in [
+            "",
+            "--preset tables --seed 4 --frames 5000",
+            "--preset paper --algo TRPOLag --rules released --hard --full-actions",
+            "--safety-budget 7.5 --observation segmented --size 64x48 --envs 8 --frame-stack 2",
+            "--safety-budget 50 --safety-budget zone_visits=2 --constraint-statistic cvar:0.1",
+            "--curriculum 1,2,3 --frames 3000 --set learning.gamma=0.5 --set network.dense=[32,16]",
+            "--set learning.rate=0.001 --set learning.products=bfloat16 --portable --set algorithm_settings.pid_gains=[1,0.5,0]",
+        ] {
+            let wanted = config(line).unwrap().begun();
+            let words = command(&wanted);
+            let again = config(words.strip_prefix("hasard train ArmamentBurdenLevel1-v0").unwrap());
+            assert_eq!(again.unwrap().begun().all_unlike(&wanted), [], "{line}: {words}");
+        }
+    }
+}
