@@ -165,6 +165,16 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MediaError> {
     file.finish()
 }
 
+/// What is wrong with a special file, and what to do.
+pub const NO_FILE: &str = "is a pipe or a device; name a regular file";
+
+/// Whether it is neither a file nor a folder, but a pipe, a device or a socket: opening one may
+/// wait for ever, and its length says nothing of what comes out of it.
+#[must_use]
+pub fn is_special(kind: &std::fs::Metadata) -> bool {
+    !kind.is_file() && !kind.is_dir()
+}
+
 /// Reads a file that must not be larger than `limit` bytes, so that a wrong name cannot fill the
 /// memory.
 ///
@@ -172,8 +182,12 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MediaError> {
 /// When it cannot be read or is larger.
 pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, MediaError> {
     use std::io::Read;
-    if path.is_dir() {
+    let kind = std::fs::metadata(path).map_err(|e| MediaError::io(path, "read", e))?;
+    if kind.is_dir() {
         return Err(MediaError::format(path, "is a folder; name a file"));
+    }
+    if is_special(&kind) {
+        return Err(MediaError::format(path, NO_FILE));
     }
     let file = std::fs::File::open(path).map_err(|e| MediaError::io(path, "read", e))?;
     let mut bytes = Vec::new();
@@ -216,6 +230,15 @@ mod tests {
         assert!(Path::new("/dev/full").exists());
         let error = write_whole(&std::env::temp_dir(), b"x").unwrap_err().to_string();
         assert!(error.contains("is a folder; name a file in it"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_regular_file_is_not_read() {
+        for path in ["/dev/zero", "/dev/null"] {
+            let error = read_limited(Path::new(path), 10).unwrap_err().to_string();
+            assert_eq!(error, format!("{path}: {NO_FILE}"));
+        }
     }
 
     #[test]

@@ -25,7 +25,7 @@ pub fn read_text(path: &Path) -> Result<String, EnvError> {
     let unreadable = |error: std::io::Error| {
         wrong(format!("cannot be read: {error}; `hasard new NAME` writes a file to begin with"))
     };
-    let file = std::fs::File::open(path).map_err(unreadable)?;
+    let file = crate::maps::files::open(path).map_err(unreadable)?;
     let mut bytes = Vec::new();
     file.take(LARGEST_TEXT + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > LARGEST_TEXT {

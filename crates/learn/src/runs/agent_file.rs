@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::fs;
 use std::path::Path;
 
+use hasard_media::files::{NO_FILE, is_special};
 use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
 use serde::{Deserialize, Serialize};
 
@@ -261,8 +262,11 @@ impl AgentFile {
                 AgentFile::parse(bytes).map_err(|problem| LearnError::content(path, problem))?;
             return Ok((bytes.to_vec(), file));
         }
-        let size = fs::metadata(path).map_err(LearnError::file(path, "read"))?.len();
-        if size > LARGEST {
+        let kind = fs::metadata(path).map_err(LearnError::file(path, "read"))?;
+        if is_special(&kind) {
+            return Err(LearnError::content(path, NO_FILE));
+        }
+        if kind.len() > LARGEST {
             return Err(LearnError::content(
                 path,
                 "too large for an agent's file; give one that `hasard export-agent` wrote",

@@ -7,6 +7,7 @@
 use std::path::Path;
 
 use hasard_envs::{Env, EnvOptions, Episode, RuleSet, VecEnv};
+use hasard_media::files::{NO_FILE, is_special};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -190,7 +191,11 @@ impl Claim {
     /// # Errors
     /// One line that names the file and what is wrong with it.
     pub fn read(path: &Path) -> Result<Claim, LearnError> {
-        let length = std::fs::metadata(path).map_err(LearnError::file(path, "read"))?.len();
+        let kind = std::fs::metadata(path).map_err(LearnError::file(path, "read"))?;
+        if is_special(&kind) {
+            return Err(LearnError::content(path, NO_FILE));
+        }
+        let length = kind.len();
         if length > LARGEST {
             return Err(LearnError::content(
                 path,
