@@ -2,7 +2,7 @@
 
 use crate::args::NewArgs;
 use crate::failure::{Failure, Outcome};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Runs the command.
 pub fn run(args: &NewArgs) -> Outcome {
@@ -16,6 +16,7 @@ pub fn run(args: &NewArgs) -> Outcome {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{}.toml", file_name(&args.name))));
+    taken_by_commands(&path)?;
     if path.exists() {
         return Err(Failure::bad(format!(
             "{}: is there already; choose another name, or another place with --out",
@@ -42,6 +43,25 @@ pub fn run(args: &NewArgs) -> Outcome {
     Ok(())
 }
 
+/// Whether every command takes a file of this name for a task: by its ending, and not as a flag, a
+/// level of another or several tasks.
+fn taken_by_commands(path: &Path) -> Outcome {
+    let name = path.to_string_lossy();
+    let refused = |why: &str| Err(Failure::bad(format!("--out {name}: {why}")));
+    if name.starts_with('-') {
+        return refused("a name that begins with - reads as a flag; put ./ before it");
+    }
+    if let Some(mark) = name.chars().find(|letter| matches!(letter, '#' | ',')) {
+        return refused(&format!(
+            "no command takes a task with {mark} in its path; choose another name"
+        ));
+    }
+    if !hasard_envs::own::is_file(&name) {
+        return refused("a task's file ends in .toml, such as my_task.toml");
+    }
+    Ok(())
+}
+
 /// `my_task` as `MyTask`, as names of scenarios are written.
 fn scenario_name(word: &str) -> Option<String> {
     let word = word.strip_suffix(".toml").unwrap_or(word);
@@ -63,6 +83,25 @@ fn file_name(word: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_that_other_commands_refuse_is_not_written() {
+        for (path, words) in [
+            ("ok.txt", ".toml"),
+            ("ok", ".toml"),
+            (".toml", ".toml"),
+            ("a#2.toml", "#"),
+            ("a,b/x.toml", ","),
+            ("-x.toml", "./"),
+        ] {
+            let line = taken_by_commands(Path::new(path)).unwrap_err().line();
+            assert!(line.contains(path) && line.contains(words), "{line}");
+            assert!(!line.contains('\n'), "{line}");
+        }
+        for path in ["ok.toml", "./-x.toml", "deep/a-b.TOML"] {
+            assert!(taken_by_commands(Path::new(path)).is_ok(), "{path}");
+        }
+    }
 
     #[test]
     fn names_are_written_as_scenarios_are() {
