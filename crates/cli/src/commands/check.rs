@@ -1,6 +1,7 @@
 //! `hasard check`: all that is wrong with a scenario's file, and its map from above.
 
 use crate::args::CheckArgs;
+use crate::commands::record::is_png;
 use crate::failure::{Failure, Outcome};
 use hasard_engine::world::ActorKind;
 use hasard_envs::{Env, EnvOptions, own};
@@ -11,6 +12,7 @@ const SIDE: usize = 800;
 
 /// Runs the command.
 pub fn run(args: &CheckArgs) -> Outcome {
+    args.out.as_deref().map_or(Ok(()), is_png)?;
     let text = own::read_text(&args.file).map_err(Failure::bad)?;
     let checked = own::check(&text);
     let file = args.file.display().to_string();

@@ -36,12 +36,22 @@ impl Kind {
             let endings: Vec<String> =
                 allowed.iter().map(|(known, _)| format!(".{known}")).collect();
             Failure::bad(format!(
-                "--out {}: give a name that ends in one of {}",
+                "--out {}: give a name that ends in {}{}",
                 path.display(),
+                if endings.len() == 1 { "" } else { "one of " },
                 endings.join(", ")
             ))
         })
     }
+}
+
+/// Whether a command that draws one picture can write it under this name.
+pub(super) fn is_png(path: &Path) -> Outcome {
+    // What writes the file has a remedy of its own for a folder.
+    if path.is_dir() {
+        return Ok(());
+    }
+    Kind::of(path, &[("png", Kind::Picture)]).map(drop)
 }
 
 pub(super) fn is_gif(path: &Path) -> bool {

@@ -2,6 +2,7 @@
 
 use crate::actor::Performance;
 use crate::args::{RenderArgs, Size, View};
+use crate::commands::record::is_png;
 use crate::failure::{Failure, Outcome};
 use crate::places::absent_folder;
 use crate::settings;
@@ -11,6 +12,7 @@ use serde_json::{Value, json};
 
 /// Runs the command.
 pub fn run(args: &RenderArgs) -> Outcome {
+    is_png(&args.out)?;
     let looks = settings::looking(
         settings::env_options(&args.env_args, Size { width: 640, height: 480 })?,
         &args.looks,
