@@ -64,6 +64,10 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
     // Which of a command's flags were typed, and which have their default.
     let typed = matches.subcommand().map_or(&matches, |(_, typed): (_, &ArgMatches)| typed);
     interrupt::behave(Manner::AtOnce);
+    // `check` lists it among what it finds.
+    if !matches!(cli.command, Command::Check(_)) {
+        hasard_envs::maps::tell_of_tasks(|left_out| note!("hasard: {left_out}"));
+    }
     let outcome = match cli.command {
         Command::Envs(args) => commands::envs::run(&args),
         Command::New(args) => commands::new::run(&args),

@@ -10,7 +10,10 @@ mod auto;
 mod engine_file;
 pub(crate) mod files;
 pub(crate) mod folder;
+mod own_task;
 
 pub use auto::{ask, find_iwad, find_maps};
 pub use engine_file::pictures_beside;
 pub use folder::{LevelFile, Maps};
+pub(crate) use own_task::say_of_task;
+pub use own_task::tell_of_tasks;

@@ -1,12 +1,75 @@
 //! The document of one level: what the file says, with what `[levels.N]`, `[hard]` and
 //! `[rules.NAME]` change of it.
 
-use super::mistakes::{Mistakes, excerpt};
+use super::mistakes::{Mistakes, excerpt, unknown};
 use super::tree::{Entry, Node, Value};
+use crate::RuleSet;
 use crate::scenarios::Setting;
 
 /// The keys of conditional layers.
 const LAYERS: [&str; 3] = ["rules", "levels", "hard"];
+
+/// Notes the layers that hold in no setting, and a name that a layer changes: ids are made of the
+/// first. `levels` is the number of levels, `around` the keys of the layers around this one.
+pub(super) fn check(
+    root: &Node,
+    layer: &Node,
+    levels: u8,
+    around: &[&str],
+    mistakes: &mut Mistakes,
+) {
+    let Value::Table(entries) = &layer.value else { return };
+    for entry in entries {
+        let key = &*entry.key;
+        if !around.is_empty() && (key == "scenario" || key == "scenario.name") {
+            let name = if key == "scenario" { entry.node.get("name") } else { Some(entry) };
+            let first = root.get("scenario").and_then(|head| head.node.get("name"));
+            let other = |name: &&Entry| name.node.text() != first.and_then(|one| one.node.text());
+            if let Some(name) = name.filter(other) {
+                mistakes.add(name.at, "a task has one name, in [scenario]; leave it out here");
+            }
+        }
+        if !LAYERS.contains(&key) {
+            continue;
+        }
+        if around.contains(&key) {
+            mistakes.add(
+                entry.at,
+                format!("[{key}] within [{key}] holds nowhere; write it once, at the top"),
+            );
+            continue;
+        }
+        let around = [around, &[key]].concat();
+        match (&entry.node.value, key) {
+            (_, "hard") => check(root, &entry.node, levels, &around, mistakes),
+            (Value::Table(layers), _) => {
+                for layer in layers {
+                    let name = &*layer.key;
+                    let known = RuleSet::ALL.map(RuleSet::name);
+                    if key == "rules" && !known.contains(&name) {
+                        mistakes.add(layer.at, unknown("rules", name, known));
+                    } else if key == "levels"
+                        && !(1..=levels.max(1)).any(|level| level.to_string() == name)
+                    {
+                        let name = excerpt(name);
+                        mistakes.add(
+                            layer.at,
+                            format!(
+                                "level {name}: the levels are 1 to {}; a [levels.N] at the top adds one",
+                                levels.max(1)
+                            ),
+                        );
+                    }
+                    check(root, &layer.node, levels, &around, mistakes);
+                }
+            }
+            _ => mistakes.add(
+                entry.at,
+                format!("[{key}] must be a table of tables, not {}", entry.node.what()),
+            ),
+        }
+    }
+}
 
 /// The document of a setting. Layers within layers count after those around them: `[levels.2.hard]`
 /// after `[levels.2]` and `[hard]`.

@@ -3,7 +3,7 @@
 //! keep it with the rest, and the hash is of both.
 
 use super::mistakes::{Mistakes, excerpt};
-use super::model::MapPlan;
+use super::model::{DrawnMap, MapPlan};
 use super::tree::{self, Node, Value};
 use crate::maps::files::read as read_map_file;
 use crate::maps::folder::FURTHER_PLAYERS;
@@ -17,6 +17,9 @@ const FIRST_MAP: &str = "MAP01";
 
 /// Longest map that is laid beneath a text, bytes of UDMF.
 const LARGEST_MAP: usize = 8 << 20;
+
+/// Most letters of a list of what a map leaves out.
+const LONGEST_LIST: usize = 2000;
 
 /// A text with the maps that it names, which lie in `folder` or where their paths lead from there.
 ///
@@ -32,11 +35,19 @@ pub(super) fn with_maps(text: String, folder: &Path) -> Result<String, String> {
         return Ok(text);
     }
     let mut whole = format!("{}\n\n[map.files]\n", text.trim_end());
+    let mut left_out = String::new();
     for (key, place) in named {
-        let written = read_place(key, place, folder)
+        let (written, parts) = read_place(key, place, folder)
             .map_err(|why| format!("[map] {key} = \"{}\": {why}", excerpt(place)))?;
         let name = place.replace('\\', "\\\\").replace('"', "\\\"");
         whole += &format!("\"{name}\" = '''\n{written}'''\n");
+        if !parts.is_empty() {
+            left_out += &format!("\"{name}\" = \"{}\"\n", parts.join(", "));
+        }
+    }
+    // The map is written without what is not played, so the text keeps the list of it.
+    if !left_out.is_empty() {
+        whole += &format!("\n[map.left_out]\n{left_out}");
     }
     Ok(whole)
 }
@@ -56,8 +67,8 @@ fn find<'a>(node: &'a Node, named: &mut Vec<(&'static str, &'a str)>) {
     }
 }
 
-/// The map at a place, written as UDMF.
-fn read_place(key: &str, place: &str, folder: &Path) -> Result<String, String> {
+/// The map at a place, written as UDMF, and what of it is left out.
+fn read_place(key: &str, place: &str, folder: &Path) -> Result<(String, Vec<String>), String> {
     let wrong = |error: &dyn std::fmt::Display| error.to_string();
     let (path, name) = match place.rsplit_once('#') {
         Some((path, name)) if key == "wad" => (path, name),
@@ -76,7 +87,7 @@ fn read_place(key: &str, place: &str, folder: &Path) -> Result<String, String> {
     if written.len() > LARGEST_MAP || written.contains("'''") {
         return Err("larger than the 8 MiB that a task's map may have".to_string());
     }
-    Ok(written)
+    Ok((written, source.left_out()))
 }
 
 /// Whether a text is a map itself rather than the path of one.
@@ -84,10 +95,12 @@ fn is_inline(text: &str) -> bool {
     text.contains('{')
 }
 
-/// The plan of a map that `named` says the place of, or is; `files` are what was laid beneath.
+/// The plan of a map that `named` says the place of, or is; `files` are what was laid beneath, and
+/// `lists` what each of them leaves out.
 pub(super) fn drawn(
     (named, at): (&str, usize),
     files: Option<&Node>,
+    lists: Option<&Node>,
     mistakes: &mut Mistakes,
 ) -> Option<MapPlan> {
     let inline = is_inline(named).then_some(named);
@@ -101,7 +114,16 @@ pub(super) fn drawn(
     match udmf::read(text.as_bytes()) {
         Ok(mut source) => {
             source.things.retain(|thing| !FURTHER_PLAYERS.contains(&thing.kind));
-            Some(MapPlan::Drawn(Arc::new(source)))
+            let list = lists.filter(|_| inline.is_none()).and_then(|lists| lists.get(named));
+            // The list may be by anyone and goes to the terminal.
+            let kept = list.and_then(|list| list.node.text()).map(|text| {
+                text.chars().filter(|letter| !letter.is_control()).take(LONGEST_LIST).collect()
+            });
+            let left_out = kept.map_or_else(|| source.left_out(), |text| vec![text]);
+            if !left_out.is_empty() {
+                mistakes.warn(at, format!("left out: {}", left_out.join(", ")));
+            }
+            Some(MapPlan::Drawn(Arc::new(DrawnMap { source, left_out })))
         }
         Err(error) => {
             mistakes.add(at, format!("this map cannot be read: {error}"));

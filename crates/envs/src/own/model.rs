@@ -51,7 +51,15 @@ pub(super) enum MapPlan {
     /// That of a built-in scenario at a level.
     BuiltIn(crate::Scenario, u8),
     /// That of a WAD or of a UDMF text.
-    Drawn(std::sync::Arc<hasard_engine::map::MapSource>),
+    Drawn(std::sync::Arc<DrawnMap>),
+}
+
+/// A map of a WAD or of a UDMF text.
+#[derive(Debug)]
+pub(super) struct DrawnMap {
+    pub source: hasard_engine::map::MapSource,
+    /// What its file holds that is not played as it says.
+    pub left_out: Vec<String>,
 }
 
 /// A map of square tiles.

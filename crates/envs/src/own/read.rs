@@ -1,12 +1,12 @@
 //! Reads the document of a setting into a [`Plan`].
 
-use super::fields::{Fields, own_name, texts, wholes};
+use super::fields::{Fields, own_name, texts};
 use super::mistakes::{Mistakes, excerpt, unknown};
 use super::model::{
     Facing, Light, MOST_LIGHTS, MOST_SPAWNS, MOST_WHENS, MOST_ZONES, MapPlan, Names, Plan,
     PlayerPlan, Zone,
 };
-use super::read_parts::{FARTHEST, height, place, term, zone};
+use super::read_parts::{height, place, range, rectangle, term, zone};
 use super::tree::{Node, Value};
 use super::{read_map, read_spawns, read_whens};
 use crate::spaces::action::BUTTONS;
@@ -158,16 +158,14 @@ fn zones(node: &Node, mistakes: &mut Mistakes) -> Vec<Zone> {
     for entry in entries {
         own_name(&entry.key, entry.at, "zone", mistakes);
         let mut fields = Fields::of(&entry.node, "a zone", mistakes);
-        let area = fields
-            .node("area")
-            .and_then(|node| wholes::<4>(node, "area", -FARTHEST, FARTHEST, mistakes));
+        let of_area = fields.node("area");
+        let area = of_area.and_then(|node| rectangle(node, "area", mistakes));
+        let of_tag = fields.node("tag").or(fields.node("tags"));
         let tag = fields.whole("tag", 1, 32_000, mistakes).map(|tag| [tag as i32; 2]);
-        let tags = fields
-            .node("tags")
-            .and_then(|node| wholes::<2>(node, "tags", 1, 32_000, mistakes))
-            .or(tag);
+        let tags =
+            fields.node("tags").and_then(|node| range(node, "tags", 1, 32_000, mistakes)).or(tag);
         fields.finish(mistakes);
-        if area.is_some() == tags.is_some() {
+        if of_area.is_some() == of_tag.is_some() {
             mistakes.add(
                 entry.at,
                 "a zone is either an `area = [west, south, east, north]` or the sectors of a `tag`",

@@ -29,17 +29,33 @@ pub(super) fn map(
     let wad = fields.text("wad", mistakes);
     let udmf = fields.text("udmf", mistakes);
     let files = fields.node("files");
+    let lists = fields.node("left_out");
     let generate = fields.node("generate");
     let side = fields.whole("tile", 32, 512, mistakes).unwrap_or(64) as i32;
     let level = fields.whole("level", 1, 3, mistakes).unwrap_or(1) as u8;
     let legend = fields.node("legend");
     fields.finish(mistakes);
-    let given = usize::from(ascii.is_some())
-        + usize::from(built_in.is_some())
-        + usize::from(wad.is_some())
-        + usize::from(udmf.is_some())
-        + usize::from(generate.is_some());
-    if given != 1 {
+    let sources = [
+        ("ascii", ascii.is_some()),
+        ("builtin", built_in.is_some()),
+        ("wad", wad.is_some()),
+        ("udmf", udmf.is_some()),
+        ("generate", generate.is_some()),
+    ];
+    let given: Vec<&str> =
+        sources.iter().filter(|(_, there)| *there).map(|(name, _)| *name).collect();
+    if let [first, .., last] = given[..] {
+        let all = if given.len() == 2 { "both".to_string() } else { given.len().to_string() };
+        mistakes.add(
+            node.at,
+            format!(
+                "[map] has {all}, {}, and needs one of them: keep {first} or {last}",
+                given.join(" and ")
+            ),
+        );
+        return None;
+    }
+    if given.is_empty() {
         mistakes.add(
             node.at,
             "[map] needs one of: ascii = \"\"\"...\"\"\", builtin = \"RemedyRush\", wad = \"x.wad#MAP01\", \
@@ -55,7 +71,7 @@ pub(super) fn map(
         return found.map(|scenario| MapPlan::BuiltIn(scenario, level));
     }
     if let Some(named) = wad.or(udmf) {
-        return map_file::drawn(named, files, mistakes);
+        return map_file::drawn(named, files, lists, mistakes);
     }
     let mut kinds = vec![usual('#'), usual('.'), usual('@'), usual(' ')];
     if let Some(legend) = legend {
@@ -250,13 +266,17 @@ fn tile_zone(name: &str, at: usize, zones: &mut Vec<Zone>, mistakes: &mut Mistak
     Some((zones.len() - 1) as u8)
 }
 
+/// The kinds that a task may put down: not the agent, nor the places that monsters walk to.
+pub(super) fn known_kinds() -> impl Iterator<Item = ActorKind> {
+    ActorKind::all().filter(|kind| !matches!(kind, ActorKind::Player | ActorKind::PatrolPoint))
+}
+
 /// A kind of thing by its name.
 pub(super) fn actor(name: &str, at: usize, mistakes: &mut Mistakes) -> Option<ActorKind> {
-    let hidden = [ActorKind::Player, ActorKind::PatrolPoint];
-    let found = ActorKind::from_class_name(name).filter(|kind| !hidden.contains(kind));
+    let named = ActorKind::from_class_name(name);
+    let found = known_kinds().find(|kind| named == Some(*kind));
     if found.is_none() {
-        mistakes
-            .add(at, unknown("kind of thing", name, ActorKind::all().map(ActorKind::class_name)));
+        mistakes.add(at, unknown("kind of thing", name, known_kinds().map(ActorKind::class_name)));
     }
     found
 }

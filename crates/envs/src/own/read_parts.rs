@@ -23,22 +23,41 @@ pub(super) fn place(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Opt
     match &node.value {
         Value::Text(text) if text == "free" => Some(Place::Free),
         Value::Text(text) => zone(text, node.at, zones, mistakes).map(Place::Zone),
-        _ => {
-            let area = wholes::<4>(
-                node,
-                "a place, if it is neither \"free\" nor a zone,",
-                -FARTHEST,
-                FARTHEST,
-                mistakes,
-            )?;
-            let [west, south, east, north] = area;
-            if west >= east || south >= north {
-                mistakes.add(node.at, "a rectangle is [west, south, east, north], west below east and south below north");
-                return None;
-            }
-            Some(Place::Area(area))
-        }
+        _ => rectangle(node, "a place, if it is neither \"free\" nor a zone,", mistakes)
+            .map(Place::Area),
     }
+}
+
+/// A rectangle: west, south, east, north.
+pub(super) fn rectangle(node: &Node, what: &str, mistakes: &mut Mistakes) -> Option<[i32; 4]> {
+    let area = wholes::<4>(node, what, -FARTHEST, FARTHEST, mistakes)?;
+    let [west, south, east, north] = area;
+    if west >= east || south >= north {
+        mistakes.add(
+            node.at,
+            "a rectangle is [west, south, east, north], west below east and south below north",
+        );
+        return None;
+    }
+    Some(area)
+}
+
+/// Two whole numbers, the lower one first.
+pub(super) fn range(
+    node: &Node,
+    what: &str,
+    from: i64,
+    to: i64,
+    mistakes: &mut Mistakes,
+) -> Option<[i32; 2]> {
+    let range = wholes::<2>(node, what, from, to, mistakes)?;
+    if range[0] > range[1] {
+        let [high, low] = range;
+        mistakes
+            .add(node.at, format!("[{high}, {low}]: the lower one comes first, [{low}, {high}]"));
+        return None;
+    }
+    Some(range)
 }
 
 /// The heights of a thing: above its floor, or absolute.

@@ -5,7 +5,8 @@
 use super::fields::{Fields, own_name};
 use super::mistakes::{Mistakes, unknown};
 use super::model::{MOST_COUNTERS, Names, Of, Place, Spawn, Trigger, When, Zone};
-use super::read_parts::{amount, place, term, zone};
+use super::read_map::known_kinds;
+use super::read_parts::{amount, place, range, term, zone};
 use super::tree::{Node, Value};
 use hasard_engine::world::{ActorKind, DamageKind};
 
@@ -253,7 +254,7 @@ fn of_things(
         } else {
             let mut known: Vec<&str> =
                 spawns.iter().filter_map(|spawn| spawn.name.as_deref()).collect();
-            ActorKind::all().for_each(|kind| known.push(kind.class_name()));
+            known_kinds().for_each(|kind| known.push(kind.class_name()));
             mistakes.add(*at, unknown("thing", name, known));
         }
     }
@@ -359,7 +360,7 @@ fn conditions(
     for entry in entries {
         let bounds = match &entry.node.value {
             Value::Whole(number) if number.abs() <= 1_000_000 => Some([*number as i32; 2]),
-            _ => super::fields::wholes::<2>(
+            _ => range(
                 &entry.node,
                 "a condition, if no single number,",
                 -1_000_000,

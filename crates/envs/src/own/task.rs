@@ -79,6 +79,9 @@ pub fn check(text: &str) -> Checked {
     let mut read = None;
     if !mistakes.any() {
         let levels = levels(&root, &mut mistakes);
+        if !mistakes.any() {
+            layers::check(&root, &root, levels, &[], &mut mistakes);
+        }
         let mut names = Names::default();
         let mut plans = Vec::new();
         for level in 1..=levels.max(1) {
@@ -174,7 +177,7 @@ fn map_of(plan: &Plan) -> Result<MapSource, EnvError> {
         MapPlan::BuiltIn(scenario, level) => {
             Ok(scenario.task.map(Setting::new(RuleSet::Paper, false, *level)))
         }
-        MapPlan::Drawn(source) => Ok(source.as_ref().clone()),
+        MapPlan::Drawn(drawn) => Ok(drawn.source.clone()),
     }
 }
 
@@ -275,6 +278,13 @@ impl Task for OwnTask {
 
     fn map(&self, setting: Setting) -> MapSource {
         map_of(self.plan(setting)).expect("a map that was built when the file was read")
+    }
+
+    fn left_out(&self, setting: Setting) -> Vec<String> {
+        match &self.plan(setting).map {
+            MapPlan::Drawn(drawn) => drawn.left_out.clone(),
+            MapPlan::Tiles(_) | MapPlan::BuiltIn(..) => Vec::new(),
+        }
     }
 
     fn rules(&self, setting: Setting, map: &Map) -> Result<AnyRules, EnvError> {

@@ -2,6 +2,7 @@
 
 use crate::error::EnvError;
 use crate::interface::step::CostTerm;
+use crate::maps::say_of_task;
 use crate::options::EnvOptions;
 use crate::registry::facts;
 use crate::registry::scenario::EnvId;
@@ -78,6 +79,16 @@ impl Blueprint {
         has_start(&world)?;
         rules.prepare(&mut world);
         let ends = Ends::of(&world);
+        let left_out = match (file, &options.map) {
+            (Some(file), _) => file.left_out,
+            (None, Some(_)) => Vec::new(),
+            // The folder of maps says it itself as it reads one.
+            (None, None) => {
+                let left_out = id.scenario.task.left_out(id.setting(options.rules, options.hard));
+                say_of_task(id, &left_out);
+                left_out
+            }
+        };
         let (start_tic, end_tic) = facts::clock(id, options.rules, options.hard);
         let (whose_rules, whose_constraint) = options.actions_of();
         let space = ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions);
@@ -91,7 +102,7 @@ impl Blueprint {
             start_tic,
             end_tic,
             template: Game::new(world, rules),
-            left_out: file.map(|file| file.left_out).unwrap_or_default(),
+            left_out,
             scene: Arc::new(scene),
             view: Arc::new(view(options.size)?),
             ends,

@@ -110,8 +110,8 @@ impl Env {
         &self.blueprint.space
     }
 
-    /// What the files of `EnvOptions::maps` hold that is not played or drawn as they say, in one
-    /// line; none if all is.
+    /// What the files of `EnvOptions::maps`, or the map of a task's file, hold that is not played or
+    /// drawn as they say, in one line; none if all is.
     #[must_use]
     pub fn left_out(&self) -> Option<String> {
         let parts = &self.blueprint.left_out;

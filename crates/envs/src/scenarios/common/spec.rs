@@ -54,6 +54,11 @@ pub trait Task: fmt::Debug + Send + Sync {
     /// The built-in map.
     fn map(&self, setting: Setting) -> MapSource;
 
+    /// What the file of that map holds that is not played as it says; empty if all is.
+    fn left_out(&self, _setting: Setting) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The rules in a map: the built-in one or a user's, so what they need of it is looked for.
     ///
     /// # Errors
