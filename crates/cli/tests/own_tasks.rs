@@ -109,3 +109,77 @@ fn several_tasks_make_a_batch() {
         assert!(error.contains("it must be one id"), "{line}: {error}");
     }
 }
+
+/// A name that the next command would not take, or an ending that says another kind of picture.
+#[test]
+fn files_have_the_endings_of_their_kind() {
+    let folder = Folder::new("endings-of-tasks");
+    for name in ["ok.txt", "a#2.toml", "a,b.toml"] {
+        let line = folder.refused(&format!("new ok -o {name}"));
+        assert!(line.contains(name), "{line}");
+    }
+    assert!(folder.refused("new ok --out=-ok.toml").contains("./"));
+    folder.ok("new ok");
+    for command in ["check ok.toml -o x.gif", "render ok.toml -o x.gif"] {
+        assert!(folder.refused(command).contains("ends in .png"), "{command}");
+    }
+    let left = std::fs::read_dir(&folder.0).unwrap().count();
+    assert_eq!(left, 1, "a refused command left something behind");
+}
+
+/// The line that `--maps` has: once, from whatever plays the task, and `check` lists it.
+#[test]
+fn what_a_tasks_map_leaves_out_is_said() {
+    let folder = Folder::new("left-out-of-tasks");
+    folder.file(
+        "yard.udmf",
+        br#"namespace = "zdoom";
+thing { x = 128.0; y = 128.0; type = 1; single = true; skill3 = true; }
+thing { x = 64.0; y = 64.0; type = 31337; single = true; skill3 = true; }
+vertex { x = 0.0; y = 0.0; } vertex { x = 0.0; y = 256.0; }
+vertex { x = 256.0; y = 256.0; } vertex { x = 256.0; y = 0.0; }
+linedef { v1 = 0; v2 = 1; sidefront = 0; special = 12; playeruse = true; }
+linedef { v1 = 1; v2 = 2; sidefront = 1; } linedef { v1 = 2; v2 = 3; sidefront = 2; }
+linedef { v1 = 3; v2 = 0; sidefront = 3; }
+sidedef { sector = 0; } sidedef { sector = 0; } sidedef { sector = 0; } sidedef { sector = 0; }
+sector { heightceiling = 128; texturefloor = "FLAT5"; textureceiling = "FLAT5"; damageamount = 20; damageinterval = 10; }
+"#,
+    );
+    folder.file(
+        "yard.toml",
+        b"[scenario]\nname = \"Yard\"\ntics = 70\n[map]\nudmf = \"yard.udmf\"\n\
+          [[when]]\nevent = \"timer\"\nevery = 35\nreward = 1.0\n",
+    );
+    let parts = ["thing type 31337 (1)", "line special 12 (1)", "sector field damageamount (1)"];
+    let (listed, quiet) = folder.both("check yard.toml");
+    assert!(listed.contains("yard.toml:5:8: warning: left out: ") && quiet.is_empty(), "{listed}");
+    for command in ["rollout yard.toml --episodes 3", "render yard.toml -o a.png"] {
+        let (_, said) = folder.both(command);
+        assert!(said.starts_with("hasard: yard.toml: left out: "), "{command}: {said}");
+        assert_eq!(said.matches("left out").count(), 1, "{command}: {said}");
+        for part in parts {
+            assert!(said.contains(part) && listed.contains(part), "{command}: {part}: {said}");
+        }
+    }
+}
+
+/// What never ends or never begins is turned away before it is read.
+#[cfg(unix)]
+#[test]
+fn devices_are_no_files() {
+    let folder = Folder::new("devices");
+    std::os::unix::fs::symlink("/dev/zero", folder.0.join("zero.toml")).unwrap();
+    folder.ok("new ok");
+    folder.replace("ok.toml", "tile = 64", "wad = \"/dev/zero\"");
+    for command in [
+        "check zero.toml",
+        "train zero.toml",
+        "check ok.toml",
+        "verify /dev/zero",
+        "replay /dev/zero",
+        "rollout RemedyRushLevel1-v0 --iwad /dev/zero",
+    ] {
+        let line = folder.refused(command);
+        assert!(line.contains("is a pipe or a device; name a regular file"), "{command}: {line}");
+    }
+}

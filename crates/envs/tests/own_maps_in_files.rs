@@ -159,3 +159,77 @@ fn wrong_maps_are_named_in_a_line() {
     let error = own::register("alone.toml", &text).unwrap_err().to_string();
     assert!(error.contains("is in another file"), "{error}");
 }
+
+/// What a map asks for in vain is named: of a text, of a file, and of a file that is gone.
+#[test]
+fn what_a_map_leaves_out_is_named() {
+    let folder = Folder::new("left-out");
+    assert!(
+        own::check(&(REST.replace("NAME", "Nothing") + "[map]\n" + &inline(&text())))
+            .mistakes
+            .is_empty()
+    );
+    let odd = text()
+        .replacen(
+            "\nsector // 0\n{",
+            "\nsector // 0\n{\ndamageamount = 20; damageinterval = 10;",
+            1,
+        )
+        .replacen("\nlinedef // 0\n{", "\nlinedef // 0\n{\nspecial = 12; playeruse = true;", 1)
+        + "thing { x = 0.0; y = 256.0; type = 31337; skill3 = true; single = true; }\n";
+    std::fs::write(folder.0.join("odd.udmf"), &odd).unwrap();
+    wad_file(&folder.0.join("odd.wad"), &odd);
+    let parts = ["thing type 31337 (1)", "sector field damageamount (1)", "line special 12 (1)"];
+    for (name, map) in [
+        ("OddText", inline(&odd)),
+        ("OddFile", "udmf = \"odd.udmf\"\n".to_owned()),
+        ("OddWad", "wad = \"odd.wad#MAP07\"\n".to_owned()),
+    ] {
+        let id = folder.open(name, &map).unwrap();
+        let whole = own::read_text(&folder.0.join(format!("{name}.toml"))).unwrap();
+        let mistakes = own::check(&whole).mistakes;
+        let env = Env::new(&id, &EnvOptions::default()).unwrap();
+        let said = env.left_out().unwrap();
+        for part in parts {
+            let named = mistakes.iter().filter(|one| one.warning && one.text.contains(part));
+            assert_eq!(named.count(), 1, "{name}: {part}: {mistakes:#?}");
+            assert!(said.contains(part), "{name}: {said}");
+        }
+        assert!(mistakes[0].text.starts_with("left out: ") && mistakes[0].line > 1, "{mistakes:?}");
+    }
+}
+
+fn inline(map: &str) -> String {
+    format!("udmf = '''\n{map}'''\n")
+}
+
+/// The line of a task that is played: once, however many worlds are made.
+#[test]
+fn a_task_that_is_played_says_what_its_map_leaves_out() {
+    static SAID: std::sync::Mutex<Vec<String>> = std::sync::Mutex::new(Vec::new());
+    hasard_envs::maps::tell_of_tasks(|line| SAID.lock().unwrap().push(line.to_owned()));
+    let folder = Folder::new("said");
+    let odd =
+        text() + "thing { x = 0.0; y = 256.0; type = 31338; skill3 = true; single = true; }\n";
+    std::fs::write(folder.0.join("odd.udmf"), odd).unwrap();
+    let id = folder.open("Said", "udmf = \"odd.udmf\"\n").unwrap();
+    for hard in [false, true, false] {
+        Env::new(&id, &EnvOptions { hard, ..EnvOptions::default() }).unwrap();
+    }
+    let said = SAID.lock().unwrap();
+    let lines: Vec<&String> = said.iter().filter(|line| line.contains("31338")).collect();
+    assert_eq!(lines.len(), 1, "{said:?}");
+    assert!(lines[0].ends_with("Said.toml: left out: thing type 31338 (1)"), "{said:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_are_no_maps_and_no_tasks() {
+    let folder = Folder::new("devices");
+    for map in ["wad = \"/dev/zero\"\n", "udmf = \"/dev/zero\"\n"] {
+        let error = folder.open("Device", map).unwrap_err();
+        assert!(error.contains("/dev/zero") && error.contains("name a regular file"), "{error}");
+    }
+    let error = own::read_text(Path::new("/dev/zero")).unwrap_err().to_string();
+    assert!(error.contains("name a regular file") && error.lines().count() == 1, "{error}");
+}

@@ -35,7 +35,7 @@ pub(super) fn check(
         if around.contains(&key) {
             mistakes.add(
                 entry.at,
-                format!("[{key}] within [{key}] holds nowhere; write it once, at the top"),
+                format!("[{key}] within [{key}]: once says it all; write it at the top"),
             );
             continue;
         }

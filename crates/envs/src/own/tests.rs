@@ -250,3 +250,58 @@ fn what_hurts_has_one_name_in_files_and_in_events() {
     }
     assert!(unknown("wind").unwrap().text.contains("script"));
 }
+
+/// What would be read past, or read otherwise than it is written.
+#[test]
+fn what_would_hold_nowhere_is_refused() {
+    let timer = "[[when]]\nevent = \"timer\"\nevery = 35\ncount = \"x\"\nreward = 1.0\n";
+    for (rest, words) in [
+        ("[zones]\nx = { area = [0, 0, -1, -1] }\n".to_owned(), "west below east"),
+        ("[zones]\nx = { tags = [5, 2] }\n".to_owned(), "[2, 5]"),
+        (format!("{timer}if = {{ x = [5, 2] }}\n"), "[2, 5]"),
+        ("[levels.2.levels.3]\nend_on = []\n".to_owned(), "[levels] within [levels]"),
+        ("[hard.rules.paper.hard]\nend_on = []\n".to_owned(), "[hard] within [hard]"),
+        ("[hard.levels.2]\nend_on = []\n".to_owned(), "the levels are 1 to 1"),
+        ("[levels.2.rules.peper]\nend_on = []\n".to_owned(), "paper"),
+        ("[levels.2]\nscenario.name = \"X\"\n".to_owned(), "one name"),
+        ("[levels.2]\n\"scenario.name\" = \"X\"\n".to_owned(), "one name"),
+        ("[hard]\nscenario = { name = \"X\" }\n".to_owned(), "one name"),
+    ] {
+        let mistakes = check(&corridor(&rest)).mistakes;
+        let wrong: Vec<_> = mistakes.iter().filter(|one| !one.warning).collect();
+        assert!(wrong.len() == 1 && wrong[0].text.contains(words), "{rest}: {mistakes:#?}");
+    }
+    for rest in [
+        "[levels.2]\nscenario.name = \"Corridor\"\nscenario.tics = 70\n[levels.2.hard]\nend_on = []\n",
+        "[rules.released.levels.1]\nend_on = []\n[hard.rules.paper]\nend_on = []\n",
+    ] {
+        let checked = check(&corridor(rest));
+        assert!(checked.can_be_played(), "{rest}: {:#?}", checked.mistakes);
+    }
+}
+
+#[test]
+fn two_maps_are_named() {
+    let text = corridor("").replace("[map]\n", "[map]\nbuiltin = \"RemedyRush\"\n");
+    let first = &check(&text).mistakes[0];
+    assert!(first.text.contains("has both, ascii and builtin"), "{first}");
+    let first = &check(&text.replace("[map]\n", "[map]\nwad = \"x.wad\"\n")).mistakes[0];
+    assert!(first.text.contains("has 3, ascii and builtin and wad"), "{first}");
+}
+
+/// The agent and the places that monsters walk to are no kinds to put down.
+#[test]
+fn hidden_kinds_are_never_named() {
+    for word in ["DoomPlayer", "PatrolPoint", "DoomPlayr", "Nothing"] {
+        let text = corridor(&format!(
+            "[[spawn]]\nkind = \"{word}\"\n[[when]]\nevent = \"kill\"\nof = \"{word}x\"\nreward = 1.0\n"
+        ));
+        let mistakes = check(&text).mistakes;
+        let wrong: Vec<_> = mistakes.iter().filter(|one| !one.warning).collect();
+        assert_eq!(wrong.len(), 2, "{mistakes:#?}");
+        for one in wrong {
+            let (_, remedy) = one.text.split_once("is unknown; ").unwrap();
+            assert!(!remedy.contains("DoomPlayer") && !remedy.contains("Patrol"), "{one}");
+        }
+    }
+}
