@@ -53,7 +53,7 @@ fn taken_by_commands(path: &Path) -> Outcome {
     }
     if let Some(mark) = name.chars().find(|letter| matches!(letter, '#' | ',')) {
         return refused(&format!(
-            "no command takes a task with {mark} in its path; choose another name"
+            "{mark} in a path parts tasks or names a level; choose another name"
         ));
     }
     if !hasard_envs::own::is_file(&name) {
