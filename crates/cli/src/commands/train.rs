@@ -12,7 +12,9 @@ use crate::zoo;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use hasard_envs::EnvOptions;
+use hasard_learn::config::constraint::check_once_each;
 use hasard_learn::config::curriculum::parse_curriculum;
+use hasard_learn::config::ranges::check_number;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::progress_bar::line;
 use hasard_learn::runs::report::Report;
@@ -304,7 +306,10 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     if args.eval_every.is_some() {
         config.evaluation.every = args.eval_every;
     }
+    // What is no number is refused before --set is read: in JSON it becomes null, and another input
+    // would be blamed for it.
     if let Some(scale) = args.cost_scale {
+        check_number("--cost-scale", scale).map_err(Failure::bad)?;
         config.algorithm_settings.penalty_scale = scale;
     }
     if let Some(text) = &args.constraint_statistic {
@@ -323,6 +328,7 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         config.set_curriculum(lessons);
     }
     config.check().map_err(Failure::bad)?;
+    check_once_each(&config.constraints).map_err(Failure::bad)?;
     Ok(config)
 }
 
@@ -334,6 +340,7 @@ fn constraint(text: &str) -> Result<Constraint, Failure> {
     let budget = number.parse().map_err(|_| {
         Failure::bad(format!("--safety-budget '{text}': write a number, or TERM=NUMBER"))
     })?;
+    check_number(&format!("--safety-budget '{text}'"), budget).map_err(Failure::bad)?;
     Ok(Constraint { term, budget })
 }
 
@@ -374,6 +381,35 @@ mod tests {
             ("", "paper"),
         ] {
             assert_eq!(config(line).unwrap().env.rules, rules, "{line}");
+        }
+    }
+
+    /// JSON has no NaN: the null in its place was laid to `--set`.
+    #[test]
+    fn what_is_no_number_is_refused_by_the_option_that_gave_it() {
+        for (option, name) in [
+            ("--safety-budget nan", "--safety-budget 'nan' cannot be NaN"),
+            ("--safety-budget excess_weight=inf", "--safety-budget 'excess_weight=inf'"),
+            ("--safety-budget=-1", "--safety-budget '-1' cannot be -1"),
+            ("--cost-scale nan", "--cost-scale cannot be NaN"),
+            ("--cost-scale=-1", "--cost-scale cannot be -1"),
+        ] {
+            for set in ["", "--set sampling.rollout=8"] {
+                let message = format!("{:?}", config(&format!("{option} {set}")).unwrap_err());
+                assert!(message.contains(name), "{option}: {message}");
+                assert!(message.contains("at least 0"), "{option}: {message}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cost_has_one_budget() {
+        for (line, cost) in [
+            ("--safety-budget 1 --safety-budget 2", "the cost has two budgets"),
+            ("--set constraints=[{\"budget\":1},{\"budget\":2}]", "the cost has two budgets"),
+        ] {
+            let message = format!("{:?}", config(line).unwrap_err());
+            assert!(message.contains(cost), "{message}");
         }
     }
 

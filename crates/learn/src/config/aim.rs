@@ -1,6 +1,7 @@
 //! What an episode may cost, as learning aims at it: a share of the budget, to which the aim may
 //! come down from what the first episodes cost.
 
+use crate::config::ranges::Shown;
 use crate::config::{AlgorithmKind, TrainConfig};
 use crate::error::LearnError;
 
@@ -25,6 +26,7 @@ impl TrainConfig {
     /// Refuses an annealing of the budget that no run can have.
     pub(super) fn check_annealing(&self) -> Result<(), LearnError> {
         let refuse = |name: &str, given: f64, allowed: &str| {
+            let given = Shown(given);
             Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
         };
         let learning = &self.learning;

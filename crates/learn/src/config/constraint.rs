@@ -108,6 +108,21 @@ impl Constraint {
     }
 }
 
+/// Refuses two budgets for one cost: the smaller would hold, and both would be paid for.
+///
+/// # Errors
+/// Names the cost.
+pub fn check_once_each(constraints: &[Constraint]) -> Result<(), LearnError> {
+    let twice = (1..constraints.len())
+        .find(|&index| constraints[..index].iter().any(|one| one.term == constraints[index].term));
+    let Some(index) = twice else { return Ok(()) };
+    let cost = match &constraints[index].term {
+        None => "the cost".to_string(),
+        Some(term) => format!("'{term}'"),
+    };
+    Err(LearnError::Config(format!("{cost} has two budgets; give it one")))
+}
+
 /// Where each constraint's cost is found among the terms; unknown names are refused.
 pub(crate) fn find_terms(
     terms: &[CostTerm],

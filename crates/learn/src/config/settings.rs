@@ -5,16 +5,18 @@ use serde_json::Value;
 
 use crate::config::change::Change;
 use crate::config::explained;
+use crate::config::set_value;
 use crate::config::train_config::TrainConfig;
 use crate::error::LearnError;
 
 /// Settings that others hang on, and what to use instead: it brings those along.
-const OTHERS_HANG_ON: [(&str, &str); 10] = [
+const OTHERS_HANG_ON: [(&str, &str); 11] = [
     ("version", "the program of that version"),
     ("algorithm", "--algo"),
     ("preset", "--preset"),
     ("env.id", "the environment's id"),
     ("env.scenario_file", "the scenario's file in place of an id"),
+    ("env.scenario_files", "the scenarios' files in place of ids"),
     ("env.rules", "--rules"),
     ("env.hard", "--hard"),
     ("env.frame_skip", "--frame-skip"),
@@ -89,16 +91,23 @@ impl TrainConfig {
             );
             return Err(LearnError::Config(problem));
         }
-        let mut all = serde_json::to_value(self).map_err(wrong)?;
-        let place = all.pointer_mut(&setting_pointer(&name)).ok_or_else(|| {
+        let mut all = set_value::with_place(self, &name)?;
+        let pointer = setting_pointer(&name);
+        let place = all.pointer_mut(&pointer).ok_or_else(|| {
             let near = explained::nearest(&name)
                 .map_or_else(String::new, |near| format!("; did you mean {near}?"));
             LearnError::Config(format!(
                 "there is no setting '{name}'{near} (`hasard settings` lists them)"
             ))
         })?;
-        *place = serde_json::from_str(given).unwrap_or_else(|_| given.into());
-        let mut config: TrainConfig = serde_json::from_value(all).map_err(wrong)?;
+        let value = set_value::value(given);
+        let was = std::mem::replace(place, value.clone());
+        let mut config: TrainConfig = serde_json::from_value(all)
+            .map_err(|error| set_value::refused(&name, given, &was, &error))?;
+        let all = serde_json::to_value(&config).map_err(wrong)?;
+        if let Some(kept) = all.pointer(&pointer) {
+            set_value::check_keys(&name, &value, kept)?;
+        }
         if name == "learning.rate" {
             config.learning.final_rate = None;
         }

@@ -10,6 +10,7 @@ use crate::config::change::Change;
 use crate::config::constraint::find_terms;
 use crate::config::curriculum::Lesson;
 use crate::config::names::names;
+use crate::config::ranges::{Shown, check_number};
 use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig,
     LearningConfig, NetworkConfig, Products, ReportingConfig, ReturnNormaliser, SamplingConfig,
@@ -112,39 +113,7 @@ impl TrainConfig {
             let where_else = if learning.portable { "with --portable" } else { "on a card" };
             return refuse("learning.products", &format_args!("bfloat16 {where_else}"), "float32");
         }
-        for (name, given, most) in [
-            ("the number of worlds", sampling.lanes, 65_536),
-            ("the rollout length", sampling.rollout, 4096),
-            ("the number of samplers", sampling.samplers, 256),
-            ("the number of groups", sampling.groups, 256),
-            ("the number of accumulated rollouts", sampling.accumulated, 64),
-            ("the number of epochs", learning.epochs, 1000),
-            ("the number of minibatches", learning.minibatches, sampling.lanes),
-            ("the number of learner threads", learning.threads, 256),
-            ("the number of kept checkpoints", self.reporting.keep, 1000),
-            ("the window of episodes", self.reporting.window, 100_000),
-            ("the episodes of an evaluation", self.evaluation.episodes, 100_000),
-            ("the confirming episodes", self.confirming_episodes(), 100_000),
-            ("the steps of the longest episode", self.episode_steps as usize, 100_000),
-            ("the delay of the PID controller", self.algorithm_settings.pid_delay, 100_000),
-            (
-                "the conjugate-gradient iterations",
-                self.algorithm_settings.conjugate_iterations,
-                1000,
-            ),
-            ("the steps of the critics", self.algorithm_settings.critic_steps, 100_000),
-            (
-                "the samples of a critic's step",
-                self.algorithm_settings.critic_batch.unwrap_or(1),
-                1 << 24,
-            ),
-            ("the recurrence", learning.recurrence.unwrap_or(1), 4096),
-            ("the tries of the line search", self.algorithm_settings.line_search_steps, 1000),
-        ] {
-            if !(1..=most).contains(&given) {
-                return refuse(name, &given, &format!("1 to {most}"));
-            }
-        }
+        self.check_counts()?;
         if !sampling.rollout.is_multiple_of(self.trajectory_steps()) {
             let allowed = format!("a multiple of the recurrence ({})", self.trajectory_steps());
             return refuse("the rollout length", &sampling.rollout, &allowed);
@@ -163,55 +132,7 @@ impl TrainConfig {
                 &format!("a multiple of samplers times groups ({parts})"),
             );
         }
-        for (name, given, low, high) in [
-            ("gamma", learning.gamma, 0.0, 1.0),
-            ("lambda of the advantages", learning.gae_lambda, 0.0, 1.0),
-            ("the learning rate", learning.rate, 0.0, 10.0),
-            ("the final learning rate", learning.final_rate.unwrap_or(0.0), 0.0, 10.0),
-            ("the target divergence", learning.target_kl.unwrap_or(0.0), 0.0, f64::MAX),
-            ("the learning rate of the critics", learning.critic_rate.unwrap_or(0.0), 0.0, 10.0),
-            ("the samples that PopArt remembers", learning.normaliser_horizon, 1.0, f64::MAX),
-            ("gamma of the costs", learning.cost_gamma.unwrap_or(0.0), 0.0, 1.0),
-            (
-                "the final exploration coefficient",
-                learning.final_exploration_coefficient.unwrap_or(0.0),
-                0.0,
-                1e3,
-            ),
-            (
-                "the largest multiplier",
-                self.algorithm_settings.multiplier_limit.unwrap_or(0.0),
-                0.0,
-                f64::MAX,
-            ),
-            ("the share of the Fisher matrix", self.algorithm_settings.fisher_fraction, 0.0, 1.0),
-            ("the largest gradient norm", learning.max_gradient_norm, 0.0, f64::MAX),
-            ("the ratio clip", learning.clip_ratio, 0.0, 10.0),
-            ("the value clip", learning.clip_value, 0.0, f64::MAX),
-            ("the exploration coefficient", learning.exploration_coefficient, 0.0, 1e3),
-            ("the seconds between reports", self.reporting.report_seconds, 0.0, f64::MAX),
-            ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
-            ("learning.auxiliary_depth", learning.auxiliary_depth, 0.0, 1e3),
-            ("learning.auxiliary_labels", learning.auxiliary_labels, 0.0, 1e3),
-            ("network.policy_scale", self.network.policy_scale, 0.0, 10.0),
-            ("the share of the budget", self.budget_share, 0.0, 2.0),
-            ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
-            (
-                "the reference budget of the PID",
-                self.algorithm_settings.pid_reference_budget.unwrap_or(0.0),
-                0.0,
-                f64::MAX,
-            ),
-            ("the decay of the PID's averages", self.algorithm_settings.pid_decay, 0.0, 1.0),
-            ("the weight of P3O's penalty", self.algorithm_settings.p3o_kappa, 0.0, f64::MAX),
-            ("the weight of IPO's barrier", self.algorithm_settings.ipo_kappa, 0.0, f64::MAX),
-            ("IPO's largest penalty", self.algorithm_settings.ipo_limit, 0.0, f64::MAX),
-            ("the penalty scale", self.algorithm_settings.penalty_scale, 0.0, f64::MAX),
-        ] {
-            if !(low..=high).contains(&given) {
-                return refuse(name, &given, &format!("a number from {low} to {high}"));
-            }
-        }
+        self.check_numbers()?;
         if self.algorithm.separates_networks() && !self.network.separate {
             return refuse(
                 "separate networks",
@@ -230,7 +151,7 @@ impl TrainConfig {
         if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
             return refuse(
                 "the learning rate of the critics",
-                &rate,
+                &Shown(rate),
                 "null unless network.separate is on",
             );
         }
@@ -267,7 +188,7 @@ impl TrainConfig {
             if !(share > 0.0 && share <= 1.0) {
                 return refuse(
                     "the share of the CVaR",
-                    &share,
+                    &Shown(share),
                     "above 0 and at most 1, such as cvar:0.1",
                 );
             }
@@ -287,9 +208,7 @@ impl TrainConfig {
             self.check_tasks()?;
         }
         for constraint in &self.constraints {
-            if !constraint.budget.is_finite() || constraint.budget < 0.0 {
-                return refuse("a budget", &constraint.budget, "a number of at least 0");
-            }
+            check_number("a budget", constraint.budget)?;
         }
         // Ids that are not registered, such as those of tests, tell when their worlds are made.
         if let Some(terms) = self.env.cost_terms()? {
@@ -316,6 +235,7 @@ impl TrainConfig {
     /// Refuses a value phase that no run can have.
     pub(crate) fn check_value_phase(&self) -> Result<(), LearnError> {
         let refuse = |name: &str, given: f64, allowed: &str| {
+            let given = Shown(given);
             Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
         };
         let learning = &self.learning;
