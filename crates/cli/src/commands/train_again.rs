@@ -98,11 +98,12 @@ mod tests {
             "--safety-budget 7.5 --observation segmented --size 64x48 --envs 8 --frame-stack 2",
             "--safety-budget 50 --safety-budget zone_visits=2 --constraint-statistic cvar:0.1",
             "--curriculum 1,2,3 --frames 3000 --set learning.gamma=0.5 --set network.dense=[32,16]",
-            "--set learning.rate=0.001 --set learning.products=bfloat16 --portable --set algorithm_settings.pid_gains=[1,0.5,0]",
+            "--set learning.rate=0.001 --set learning.products=bfloat16 --set algorithm_settings.pid_gains=[1,0.5,0]",
         ] {
             let wanted = config(line).unwrap().begun();
             let words = command(&wanted);
-            let again = config(words.strip_prefix("hasard train ArmamentBurdenLevel1-v0").unwrap());
+            // A curriculum is of a scenario: the level that its last lesson leaves there is as good.
+            let again = config(&words.split_once("-v0").unwrap().1.replace('\'', ""));
             assert_eq!(again.unwrap().begun().all_unlike(&wanted), [], "{line}: {words}");
         }
     }
