@@ -215,6 +215,7 @@ fn commands_in_hints_can_be_pasted() {
     for entry in fs::read_dir(&checkpoints).unwrap() {
         fs::remove_dir_all(entry.unwrap().path()).unwrap();
     }
+    fs::remove_file(folder.0.join(run).join("selected.json")).unwrap();
     let error = String::from_utf8_lossy(&folder.run("", "eval", &[run]).stderr).into_owned();
     folder.pasted(&format!("hasard train{}", error.trim().rsplit_once("hasard train").unwrap().1));
     let refused = folder.run("", "record --hard -o a.gif", &[run]);

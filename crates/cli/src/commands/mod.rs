@@ -26,4 +26,5 @@ pub mod sweep;
 pub mod trace;
 pub mod train;
 mod train_again;
+mod train_settings;
 pub mod verify;

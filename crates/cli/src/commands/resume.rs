@@ -1,7 +1,7 @@
 //! `hasard train --resume`: a flag that contradicts the run in the directory changes the run where
 //! a run may change, and is refused instead of ignored elsewhere.
 
-use super::train::configuration;
+use super::train_settings::configuration;
 use crate::args::TrainArgs;
 use crate::failure::Failure;
 use clap::ArgMatches;

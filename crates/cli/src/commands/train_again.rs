@@ -75,7 +75,7 @@ pub fn command(config: &TrainConfig) -> String {
 mod tests {
     use super::*;
     use crate::args::{Cli, Command};
-    use crate::commands::train::{configuration, with_rules};
+    use crate::commands::train_settings::{configuration, with_rules};
     use crate::failure::Failure;
     use clap::{CommandFactory, FromArgMatches};
 

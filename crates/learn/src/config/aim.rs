@@ -1,7 +1,7 @@
 //! What an episode may cost, as learning aims at it: a share of the budget, to which the aim may
 //! come down from what the first episodes cost.
 
-use crate::config::ranges::Shown;
+use crate::config::numbers::Shown;
 use crate::config::{AlgorithmKind, TrainConfig};
 use crate::error::LearnError;
 

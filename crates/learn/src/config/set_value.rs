@@ -3,7 +3,6 @@
 use serde_json::Value;
 
 use crate::config::TrainConfig;
-use crate::config::settings::setting_pointer;
 use crate::error::LearnError;
 
 /// Settings that are written only where they are on.
@@ -18,6 +17,12 @@ const WHOLE: f64 = (1u64 << 53) as f64;
 
 /// Letters of a value that a message repeats.
 const REPEATED: usize = 60;
+
+/// Where a setting such as `learning.rate` stands in `config.json`, as a JSON pointer.
+#[must_use]
+pub fn setting_pointer(name: &str) -> String {
+    format!("/{}", name.replace('.', "/"))
+}
 
 fn wrong(problem: String) -> LearnError {
     LearnError::Config(problem)

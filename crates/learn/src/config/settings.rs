@@ -6,6 +6,7 @@ use serde_json::Value;
 use crate::config::change::Change;
 use crate::config::explained;
 use crate::config::set_value;
+pub use crate::config::set_value::setting_pointer;
 use crate::config::train_config::TrainConfig;
 use crate::error::LearnError;
 
@@ -55,12 +56,6 @@ const CHANGE_NOTHING: [&str; 6] = [
     "evaluation",
     "reporting",
 ];
-
-/// Where a setting such as `learning.rate` stands in `config.json`, as a JSON pointer.
-#[must_use]
-pub fn setting_pointer(name: &str) -> String {
-    format!("/{}", name.replace('.', "/"))
-}
 
 /// Whether a setting is of a group, or is it.
 fn within(name: &str, group: &str) -> bool {

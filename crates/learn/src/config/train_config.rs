@@ -10,7 +10,7 @@ use crate::config::change::Change;
 use crate::config::constraint::find_terms;
 use crate::config::curriculum::Lesson;
 use crate::config::names::names;
-use crate::config::ranges::{Shown, check_number};
+use crate::config::numbers::{Shown, check_number};
 use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig,
     LearningConfig, NetworkConfig, Products, ReportingConfig, ReturnNormaliser, SamplingConfig,

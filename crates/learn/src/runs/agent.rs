@@ -174,6 +174,12 @@ impl TrainedPolicy {
             _ => store.newest(warn)?,
         };
         let loaded = loaded.ok_or_else(|| {
+            if store.has_judged() {
+                return LearnError::content(
+                    directory,
+                    "its checkpoints are gone; bring its folder checkpoints back",
+                );
+            }
             let command = go_on(&config, directory);
             LearnError::content(
                 directory,

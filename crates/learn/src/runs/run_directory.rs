@@ -45,10 +45,11 @@ impl RunDirectory {
         let mut directory = RunDirectory::lock(path)?;
         directory.made.0 = made_folder;
         let checkpoints = path.join("checkpoints");
-        let rests = fs::read_dir(&checkpoints).is_ok_and(|mut entries| entries.next().is_some());
+        let rests = fs::read_dir(&checkpoints).is_ok_and(|mut entries| entries.next().is_some())
+            || fs::metadata(path.join(METRICS)).is_ok_and(|data| data.is_file() && data.len() > 0);
         let problem = if path.join("config.json").exists() {
             "there is a run already; go on with --resume, or choose another directory with --out"
-        } else if rests || !directory.holds_no_row() {
+        } else if rests {
             "rows or checkpoints of a run are here, but not its config.json; bring it back, or choose another directory with --out"
         } else {
             ""

@@ -1,7 +1,7 @@
 //! What shorter runs need so that they make sense: multipliers that move as far in fewer updates.
 
 use crate::args::{Cli, Command};
-use crate::commands::train::configuration;
+use crate::commands::train_settings::configuration;
 use crate::failure::Failure;
 use clap::Parser;
 use hasard_learn::config::{AlgorithmKind, TrainConfig};

@@ -1,4 +1,5 @@
 use super::*;
+use crate::config::numbers::check_number;
 use crate::config::{AlgorithmKind, EnvConfig, Preset};
 
 fn plain(algorithm: AlgorithmKind, preset: Preset) -> TrainConfig {

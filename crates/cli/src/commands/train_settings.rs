@@ -1,0 +1,162 @@
+//! The settings of a fresh run, from the options of `hasard train`.
+
+use crate::args::{Rules, TrainArgs};
+use crate::failure::Failure;
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+use hasard_learn::config::constraint::check_once_each;
+use hasard_learn::config::curriculum::parse_curriculum;
+use hasard_learn::config::numbers::check_number;
+use hasard_learn::config::{Constraint, Preset, TrainConfig};
+
+/// The command with the rules that its preset belongs to, unless it names others: what made the
+/// paper's tables is both.
+pub fn with_rules(args: &TrainArgs, typed: &ArgMatches) -> TrainArgs {
+    let mut args = args.clone();
+    let given = typed.value_source("rules") == Some(ValueSource::CommandLine);
+    if !given && args.preset.parse().is_ok_and(|preset: Preset| preset == Preset::Tables) {
+        args.env_args.rules = Rules::Tables;
+    }
+    args
+}
+
+/// The settings of a fresh run: the preset's, then flags, then `--set`.
+pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
+    let env = crate::settings::env_config(&args.env, &args.env_args, &args.observation);
+    let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
+    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env)
+        .map_err(Failure::bad)?;
+    config.seed = args.seed;
+    config.device.clone_from(&args.device);
+    config.frames = args.frames.unwrap_or(config.frames);
+    config.sampling.synchronous = args.sync || (args.device == "cpu" && !args.asynchronous);
+    config.learning.portable = args.portable;
+    if let Some(threads) = args.threads {
+        config.learning.threads = usize::from(threads);
+        config.sampling.samplers = usize::from(threads);
+    }
+    if let Some(lanes) = args.envs {
+        config.sampling.lanes = lanes as usize;
+    }
+    if args.eval_every.is_some() {
+        config.evaluation.every = args.eval_every;
+    }
+    // What is no number is refused before --set is read: in JSON it becomes null, and another input
+    // would be blamed for it.
+    if let Some(scale) = args.cost_scale {
+        check_number("--cost-scale", scale).map_err(Failure::bad)?;
+        config.algorithm_settings.penalty_scale = scale;
+    }
+    if let Some(text) = &args.constraint_statistic {
+        config.constraint_statistic = text
+            .parse()
+            .map_err(|error| Failure::bad(format!("--constraint-statistic: {error}")))?;
+    }
+    if !args.safety_budget.is_empty() {
+        config.constraints =
+            args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
+    }
+    let mut config =
+        config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
+    if let Some(text) = &args.curriculum {
+        let lessons = parse_curriculum(text, config.frames).map_err(Failure::bad)?;
+        config.set_curriculum(lessons);
+    }
+    config.check().map_err(Failure::bad)?;
+    check_once_each(&config.constraints).map_err(Failure::bad)?;
+    Ok(config)
+}
+
+/// `50`, or `lava=50` for a named cost term.
+fn constraint(text: &str) -> Result<Constraint, Failure> {
+    let (term, number) = text
+        .split_once('=')
+        .map_or((None, text), |(term, number)| (Some(term.to_string()), number));
+    let budget = number.parse().map_err(|_| {
+        Failure::bad(format!("--safety-budget '{text}': write a number, or TERM=NUMBER"))
+    })?;
+    check_number(&format!("--safety-budget '{text}'"), budget).map_err(Failure::bad)?;
+    Ok(Constraint { term, budget })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Cli, Command};
+    use clap::{CommandFactory, FromArgMatches};
+    use hasard_learn::config::{AlgorithmKind, ConstraintStatistic};
+
+    fn config(line: &str) -> Result<TrainConfig, Failure> {
+        let line = format!("hasard train ArmamentBurdenLevel1-v0 {line}");
+        let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
+        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
+            panic!("not a training")
+        };
+        configuration(&with_rules(&args, matches.subcommand_matches("train").unwrap()))
+    }
+
+    /// A2: the paper's best algorithm within minutes is what a command without options trains; 500
+    /// million frames are asked for.
+    #[test]
+    fn without_options_it_is_the_quick_pid() {
+        let plain = config("").unwrap();
+        assert_eq!(
+            (plain.algorithm, plain.preset, plain.frames),
+            (AlgorithmKind::PpoPid, Preset::Quick, 10_000_000)
+        );
+        assert_eq!(config("--preset paper").unwrap().frames, 500_000_000);
+    }
+
+    #[test]
+    fn the_preset_of_the_tables_has_their_rules_unless_others_are_named() {
+        for (line, rules) in [
+            ("--preset tables", "tables"),
+            ("--preset tables --rules paper", "paper"),
+            ("--preset released", "paper"),
+            ("", "paper"),
+        ] {
+            assert_eq!(config(line).unwrap().env.rules, rules, "{line}");
+        }
+    }
+
+    /// JSON has no NaN: the null in its place was laid to `--set`.
+    #[test]
+    fn what_is_no_number_is_refused_by_the_option_that_gave_it() {
+        for (option, name) in [
+            ("--safety-budget nan", "--safety-budget 'nan' cannot be NaN"),
+            ("--safety-budget excess_weight=inf", "--safety-budget 'excess_weight=inf'"),
+            ("--safety-budget=-1", "--safety-budget '-1' cannot be -1"),
+            ("--cost-scale nan", "--cost-scale cannot be NaN"),
+            ("--cost-scale=-1", "--cost-scale cannot be -1"),
+        ] {
+            for set in ["", "--set sampling.rollout=8"] {
+                let message = format!("{:?}", config(&format!("{option} {set}")).unwrap_err());
+                assert!(message.contains(name), "{option}: {message}");
+                assert!(message.contains("at least 0"), "{option}: {message}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cost_has_one_budget() {
+        for (line, cost) in [
+            ("--safety-budget 1 --safety-budget 2", "the cost has two budgets"),
+            ("--set constraints=[{\"budget\":1},{\"budget\":2}]", "the cost has two budgets"),
+        ] {
+            let message = format!("{:?}", config(line).unwrap_err());
+            assert!(message.contains(cost), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_constraint_on_the_tail_is_asked_for_by_name() {
+        assert_eq!(
+            config("--constraint-statistic cvar:0.1").unwrap().constraint_statistic,
+            ConstraintStatistic::Cvar(0.1)
+        );
+        for wrong in ["--constraint-statistic cvar:2", "--algo P3O --constraint-statistic cvar:0.1"]
+        {
+            assert!(config(wrong).is_err(), "{wrong}");
+        }
+    }
+}
