@@ -17,6 +17,12 @@ pub struct EpisodeLines {
     rules: Option<(&'static str, bool)>,
 }
 
+/// Adds the rule set to an episode's row, and whether it was played under the hard constraint.
+pub fn say_rules(row: &mut Value, (rules, hard): (&str, bool)) {
+    row["rules"] = json!(rules);
+    row["hard"] = json!(hard);
+}
+
 impl EpisodeLines {
     /// Nothing printed yet.
     pub fn new(json: bool) -> EpisodeLines {
@@ -39,9 +45,8 @@ impl EpisodeLines {
         let mut out = std::io::stdout().lock();
         if self.json {
             let mut row = episode_row(env, number, &episode);
-            if let Some((rules, hard)) = self.rules {
-                row["rules"] = json!(rules);
-                row["hard"] = json!(hard);
+            if let Some(rules) = self.rules {
+                say_rules(&mut row, rules);
             }
             writeln!(out, "{row}")?;
         } else {

@@ -167,7 +167,9 @@ pub fn evaluate(
         for episode in
             play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))?
         {
-            rows.push(episode_row(&config.env.id, all.len() as u64, &episode));
+            let mut row = episode_row(&config.env.id, all.len() as u64, &episode);
+            episode_lines::say_rules(&mut row, (options.rules.name(), options.hard));
+            rows.push(row);
             all.push(episode);
         }
     }
