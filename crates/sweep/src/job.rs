@@ -166,6 +166,9 @@ impl Job {
     /// Whether its agent still has to be evaluated once the run is finished.
     #[must_use]
     pub fn wants_evaluation(&self) -> bool {
+        if self.evaluate == 0 {
+            return false;
+        }
         // Episodes of an agent that the run has replaced since, or fewer than are asked for, count
         // as none.
         let written = |path: PathBuf| std::fs::metadata(path).and_then(|data| data.modified()).ok();
@@ -173,7 +176,7 @@ impl Job {
         let stale = kept < written(self.directory.join("selected.json"));
         let rows = std::fs::read(self.evaluation()).unwrap_or_default();
         let rows = rows.split(|byte| *byte == b'\n').filter(|row| !row.is_empty()).count() as u64;
-        self.evaluate > 0 && (kept.is_none() || stale || rows < u64::from(self.evaluate))
+        kept.is_none() || stale || rows < u64::from(self.evaluate)
     }
 
     /// Where the episodes of its agent are kept: reports find them there. The file is there when it

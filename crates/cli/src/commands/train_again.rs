@@ -74,19 +74,7 @@ pub fn command(config: &TrainConfig) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::{Cli, Command};
-    use crate::commands::train_settings::{configuration, with_rules};
-    use crate::failure::Failure;
-    use clap::{CommandFactory, FromArgMatches};
-
-    fn config(line: &str) -> Result<TrainConfig, Failure> {
-        let line = format!("hasard train ArmamentBurdenLevel1-v0 {line}");
-        let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
-        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
-            panic!("not a training")
-        };
-        configuration(&with_rules(&args, matches.subcommand_matches("train").unwrap()))
-    }
+    use crate::commands::train_settings::tests::config;
 
     /// What it writes, typed again, gives the same settings.
     #[test]

@@ -80,13 +80,14 @@ fn constraint(text: &str) -> Result<Constraint, Failure> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::args::{Cli, Command};
     use clap::{CommandFactory, FromArgMatches};
     use hasard_learn::config::{AlgorithmKind, ConstraintStatistic};
 
-    fn config(line: &str) -> Result<TrainConfig, Failure> {
+    /// What the options of a line come to.
+    pub(in crate::commands) fn config(line: &str) -> Result<TrainConfig, Failure> {
         let line = format!("hasard train ArmamentBurdenLevel1-v0 {line}");
         let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
         let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
