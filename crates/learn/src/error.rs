@@ -41,6 +41,14 @@ impl LearnError {
         move |source| LearnError::File { path, doing, source }
     }
 
+    /// Weights that a run cannot begin with; `whose` names what has them, a run or an agent.
+    pub(crate) fn no_beginning(whose: &str) -> LearnError {
+        LearnError::Config(format!(
+            "the {whose} to begin with does not fit: it has other layers, critics, actions or pictures than this run; give this \
+             run those of its settings, or name another with --init-from"
+        ))
+    }
+
     /// A content error with its path.
     pub fn content(path: &Path, problem: impl std::fmt::Display) -> LearnError {
         LearnError::Content { path: path.to_path_buf(), problem: problem.to_string() }
@@ -83,6 +91,9 @@ impl std::fmt::Display for LearnError {
                 match source.kind() {
                     ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                         f.write_str("; make room and go on with --resume")
+                    }
+                    ErrorKind::PermissionDenied if *doing == "read" => {
+                        f.write_str("; ask for the right to read it, or name another")
                     }
                     ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
                         f.write_str("; choose a place that you may write to")

@@ -39,6 +39,16 @@ pub fn run(args: &ClaimArgs) -> Outcome {
     let stem = format!("{id}.{under}.{slug}");
     let (file, path) =
         (format!("{stem}.{}", zoo::ENDING), args.out.join(format!("{stem}.{ENDING}")));
+    if let Ok(there) = Claim::read(&path)
+        && there.name != args.name
+    {
+        return Err(Failure::bad(format!(
+            "--name '{}': {} is the claim of '{}'; give a name with other letters, or another --out",
+            args.name,
+            path.display(),
+            there.name
+        )));
+    }
     // The agent first: what is claimed is measured from the very file that is given away.
     // Under another name until it is measured, so that an earlier claim stays whole until then.
     let (kept, new) = (args.out.join(&file), args.out.join(format!("{file}.partial")));

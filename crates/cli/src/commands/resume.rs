@@ -97,13 +97,22 @@ pub fn settings(
             return Err(Failure::bad(format!(
                 "{flag}: the run in {} has {}, not {}; leave {flag} out to go on with it, or begin another with --out",
                 directory.display(),
-                show(there),
-                show(wanted),
+                word(&name, there),
+                word(&name, wanted),
             )));
         }
         changes.push(format!("{name}={}", wanted.unwrap_or(&Value::Null)));
     }
     Ok(changes)
+}
+
+/// A setting as the flag that decides it has it: `--sync` and `--async` are of one.
+fn word(name: &str, value: Option<&Value>) -> String {
+    match (name, value.and_then(Value::as_bool)) {
+        ("sampling.synchronous", Some(true)) => "sampling and learning in turn".into(),
+        ("sampling.synchronous", Some(false)) => "sampling and learning side by side".into(),
+        _ => show(value),
+    }
 }
 
 /// A setting as users write it.
@@ -171,7 +180,10 @@ mod tests {
             ("--algo PPOLag", "--algo: the run in run has \"PPOPID\", not \"PPOLag\""),
             ("--preset paper", "--preset: the run in run has \"quick\", not \"paper\""),
             ("--safety-budget 5", "--safety-budget: "),
-            ("--async", "--async: the run in run has true, not false"),
+            (
+                "--async",
+                "--async: the run in run has sampling and learning in turn, not sampling and learning side by side",
+            ),
             ("--frame-skip 8", "--frame-skip: the run in run has 4, not 8"),
             ("--frame-skip 4 --size 64x48", "--size: the run in run has [128,72], not [64,48]"),
             ("--set learning.gamma=0.99", "--set learning.gamma: the run in run has 0.9, not 0.99"),

@@ -1,7 +1,7 @@
 //! `hasard train`: an agent from pixels.
 
 use super::sweep::plan;
-use super::train_settings::{configuration, with_rules};
+use super::train_settings::{check_length, configuration, with_rules};
 use crate::args::TrainArgs;
 use crate::automap;
 use crate::episode_lines::worth;
@@ -61,6 +61,7 @@ pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
         (Start::Resume { settings }, config)
     } else {
         let config = configuration(&with_rules(args, typed))?;
+        check_length(args, &config)?;
         let start = match &args.init_from {
             Some(other) => Start::From(config.clone(), zoo::find(other.as_os_str())?),
             None => Start::Fresh(config.clone()),

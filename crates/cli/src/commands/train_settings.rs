@@ -67,6 +67,20 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     Ok(config)
 }
 
+/// Refuses a fresh run whose curriculum has another length than `--frames` asks for: it would train
+/// for its own.
+pub fn check_length(args: &TrainArgs, config: &TrainConfig) -> Result<(), Failure> {
+    let (Some(text), Some(frames)) = (&args.curriculum, args.frames) else { return Ok(()) };
+    if frames == config.frames {
+        return Ok(());
+    }
+    Err(Failure::bad(format!(
+        "--curriculum {text}: its levels have {} frames, --frames says {frames}; leave --frames out, or name levels alone, \
+         such as 1,2,3, to share its frames",
+        config.frames
+    )))
+}
+
 /// `50`, or `lava=50` for a named cost term.
 fn constraint(text: &str) -> Result<Constraint, Failure> {
     let (term, number) = text
@@ -135,6 +149,31 @@ pub(super) mod tests {
                 assert!(message.contains(name), "{option}: {message}");
                 assert!(message.contains("at least 0"), "{option}: {message}");
             }
+        }
+    }
+
+    /// The run was as long as its levels, whatever `--frames` said.
+    #[test]
+    fn a_curriculum_is_as_long_as_frames_say() {
+        let check = |line: &str| {
+            let matches = Cli::command()
+                .try_get_matches_from(
+                    format!("hasard train RemedyRushLevel1 {line}").split_whitespace(),
+                )
+                .unwrap();
+            let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
+                panic!("not a training")
+            };
+            check_length(&args, &configuration(&args).unwrap())
+        };
+        let message = format!("{:?}", check("--curriculum 1:64,2:64 --frames 100").unwrap_err());
+        assert!(message.contains("128 frames, --frames says 100"), "{message}");
+        for line in [
+            "--curriculum 1:64,2:64 --frames 128",
+            "--curriculum 1,2 --frames 100",
+            "--curriculum 1:64",
+        ] {
+            assert!(check(line).is_ok(), "{line}");
         }
     }
 

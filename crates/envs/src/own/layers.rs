@@ -9,8 +9,11 @@ use crate::scenarios::Setting;
 /// The keys of conditional layers.
 const LAYERS: [&str; 3] = ["rules", "levels", "hard"];
 
-/// Notes the layers that hold in no setting, and a name that a layer changes: ids are made of the
-/// first. `levels` is the number of levels, `around` the keys of the layers around this one.
+/// What the levels of a task share: ids are made of the name, a task is listed with one title and
+/// summary, and a budget is a scenario's.
+const SHARED: [&str; 4] = ["name", "title", "summary", "budget"];
+
+/// Notes the layers that hold in no setting, and what a layer changes of what all levels share. `levels` is the number of levels, `around` the keys of the layers around this one.
 pub(super) fn check(
     root: &Node,
     layer: &Node,
@@ -21,12 +24,23 @@ pub(super) fn check(
     let Value::Table(entries) = &layer.value else { return };
     for entry in entries {
         let key = &*entry.key;
-        if !around.is_empty() && (key == "scenario" || key == "scenario.name") {
-            let name = if key == "scenario" { entry.node.get("name") } else { Some(entry) };
-            let first = root.get("scenario").and_then(|head| head.node.get("name"));
-            let other = |name: &&Entry| name.node.text() != first.and_then(|one| one.node.text());
-            if let Some(name) = name.filter(other) {
-                mistakes.add(name.at, "a task has one name, in [scenario]; leave it out here");
+        for field in SHARED.into_iter().filter(|_| !around.is_empty()) {
+            let said = match key.strip_prefix("scenario") {
+                Some("") => entry.node.get(field),
+                Some(path) => (path.strip_prefix('.') == Some(field)).then_some(entry),
+                None => None,
+            };
+            let of_all = root.get("scenario").and_then(|head| head.node.get(field));
+            let other = |said: &&Entry| match field {
+                "budget" => around.iter().any(|layer| *layer != "rules"),
+                _ => said.node.text() != of_all.and_then(|one| one.node.text()),
+            };
+            if let Some(said) = said.filter(other) {
+                let message = match field {
+                    "budget" => "a task has one budget for all levels, and 0 under [hard]; write it in [scenario], or in [rules.NAME]".into(),
+                    _ => format!("a task has one {field}, in [scenario]; leave it out here"),
+                };
+                mistakes.add(said.at, message);
             }
         }
         if !LAYERS.contains(&key) {

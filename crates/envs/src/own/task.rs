@@ -221,7 +221,8 @@ fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
         .collect();
     let (name, title, summary) =
         (intern(&first.name), intern(&first.title), intern(&first.summary));
-    let budget = first.budget;
+    let budget = |rules| read.plans[index(Setting::new(rules, false, 1))].budget;
+    let budgets = RuleSet::ALL.map(budget);
     let task = OwnTask {
         names: read.names.counters.iter().map(|name| intern(name)).collect(),
         controls: read.plans.iter().map(controls).collect(),
@@ -230,7 +231,7 @@ fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
     // Once for each distinct text: handles to scenarios live as long as the program.
     let spec = ScenarioSpec {
         levels: read.levels,
-        budgets: [budget; 3],
+        budgets,
         cost_terms: Box::leak(terms.into_boxed_slice()),
         number: place::hash(text) as isize,
         file: Some(ScenarioFile {
@@ -284,6 +285,15 @@ impl Task for OwnTask {
         match &self.plan(setting).map {
             MapPlan::Drawn(drawn) => drawn.left_out.clone(),
             MapPlan::Tiles(_) | MapPlan::BuiltIn(..) => Vec::new(),
+        }
+    }
+
+    fn has_test_seeds(&self, setting: Setting) -> bool {
+        match &self.plan(setting).map {
+            MapPlan::Tiles(tiles) => {
+                tiles.generate.as_ref().is_some_and(|generate| generate.train_seeds > 0)
+            }
+            MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => false,
         }
     }
 

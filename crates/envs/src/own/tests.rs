@@ -1,7 +1,7 @@
 //! Files that are read, refused and played.
 
 use super::{check, register, template};
-use crate::{Env, EnvOptions, FrameSize};
+use crate::{Env, EnvOptions, FrameSize, RuleSet};
 
 /// A world of a file, small to draw.
 fn env(text: &str, hard: bool) -> Env {
@@ -266,6 +266,10 @@ fn what_would_hold_nowhere_is_refused() {
         ("[levels.2]\nscenario.name = \"X\"\n".to_owned(), "one name"),
         ("[levels.2]\n\"scenario.name\" = \"X\"\n".to_owned(), "one name"),
         ("[hard]\nscenario = { name = \"X\" }\n".to_owned(), "one name"),
+        ("[levels.2]\nscenario.title = \"X\"\n".to_owned(), "one title"),
+        ("[rules.tables]\nscenario.summary = \"X\"\n".to_owned(), "one summary"),
+        ("[levels.2]\nscenario.budget = 3\n".to_owned(), "one budget"),
+        ("[hard]\n\"scenario.budget\" = 3\n".to_owned(), "one budget"),
     ] {
         let mistakes = check(&corridor(&rest)).mistakes;
         let wrong: Vec<_> = mistakes.iter().filter(|one| !one.warning).collect();
@@ -278,6 +282,15 @@ fn what_would_hold_nowhere_is_refused() {
         let checked = check(&corridor(rest));
         assert!(checked.can_be_played(), "{rest}: {:#?}", checked.mistakes);
     }
+}
+
+/// The first level's of the paper's rules held under all rules.
+#[test]
+fn a_rule_set_may_have_another_budget() {
+    let text = corridor("[rules.tables]\nscenario.budget = 7\n");
+    let scenario = register("budgets.toml", &text).unwrap();
+    let paper = scenario.safety_budget(RuleSet::Paper);
+    assert_eq!((scenario.safety_budget(RuleSet::Tables), paper == 7.0), (7.0, false));
 }
 
 #[test]

@@ -136,5 +136,10 @@ fn rules(id: EnvId, options: &EnvOptions, map: &Map) -> Result<AnyRules, EnvErro
     let (early_creatures, test_seeds) = (options.early_creatures, options.test_seeds);
     let setting =
         Setting { early_creatures, test_seeds, ..id.setting(options.rules, options.hard) };
+    if test_seeds && !id.scenario.task.has_test_seeds(setting) {
+        let allowed =
+            "false, except in a task with `train_seeds` in its [map.generate]".to_string();
+        return Err(EnvError::Option { option: "test_seeds", given: "true".to_string(), allowed });
+    }
     id.scenario.task.rules(setting, map)
 }

@@ -303,6 +303,9 @@ impl AgentFile {
                 .map_err(|error| format!("{name}: {error}"))?;
             let (words, _) = scales.data().as_chunks::<4>();
             let scales: Vec<f32> = words.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+            if !scales.iter().all(|scale| scale.is_finite()) {
+                return Err(format!("{name}: a weight is no finite number"));
+            }
             codes.insert(name.to_string(), (view.data().to_vec(), scales));
         }
         let pixels = |name: &str| -> Result<Vec<f64>, String> {
@@ -345,13 +348,7 @@ impl AgentFile {
     /// Puts the weights into a learner that is to learn on: the statistics of pixels count as many
     /// pictures as the agent's own training saw. What returns were like is not in the file.
     pub(crate) fn begin(&self, learner: &mut Learner) -> Result<(), LearnError> {
-        self.restore_weights(learner).map_err(|_| {
-            LearnError::Config(
-                "the agent to begin with does not fit: it has other layers, critics, actions or pictures than \
-                 the run; give the run those of the agent's settings, or another agent"
-                    .into(),
-            )
-        })?;
+        self.restore_weights(learner).map_err(|_| LearnError::no_beginning("agent"))?;
         let config = &self.card.config;
         learner.pixels.count = (config.frames / u64::from(config.env.frame_skip).max(1)) as f64;
         Ok(())

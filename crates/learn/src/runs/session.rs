@@ -190,7 +190,7 @@ impl Session {
         match beginning {
             Beginning::Nothing => {}
             Beginning::Weights(loaded, order) => {
-                loaded.restore_weights(&mut learner)?;
+                loaded.begin(&mut learner)?;
                 order.iter().for_each(|order| buttons::reorder(&mut learner, order));
             }
             Beginning::Agent(bytes, order) => {

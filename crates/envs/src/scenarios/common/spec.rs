@@ -59,6 +59,11 @@ pub trait Task: fmt::Debug + Send + Sync {
         Vec::new()
     }
 
+    /// Whether there are levels that no training sees ([`crate::EnvOptions::test_seeds`]).
+    fn has_test_seeds(&self, _setting: Setting) -> bool {
+        false
+    }
+
     /// The rules in a map: the built-in one or a user's, so what they need of it is looked for.
     ///
     /// # Errors

@@ -94,6 +94,11 @@ impl Loaded {
         })
     }
 
+    /// Puts weights and normalisers into a learner that is to learn on.
+    pub(crate) fn begin(&self, learner: &mut Learner) -> Result<(), LearnError> {
+        self.weights_into(learner).map_err(|_| LearnError::no_beginning("run"))
+    }
+
     pub(super) fn weights_into(&self, learner: &mut Learner) -> Result<(), String> {
         let tensors = self.tensors()?;
         let find = |name: &str| tensors.tensor(name).map_err(|error| format!("{name}: {error}"));
