@@ -103,6 +103,16 @@ fn forged_claims_are_refused() {
     assert!(folder.refused("verify missing.claim.json").contains("missing.claim.json"));
 }
 
+/// Names that differ in signs alone make one file's name, and the second claim replaced the first.
+#[test]
+fn a_claim_of_another_name_is_not_replaced() {
+    let (folder, path, claim) = claimed("claim_names");
+    let refused = folder.refused("claim run --name MINE! --episodes 2 -o board");
+    assert!(refused.contains("the claim of 'mine'"), "{refused}");
+    assert_eq!(serde_json::from_slice::<Value>(&folder.read(&path)).unwrap(), claim);
+    folder.ok("claim run --name mine --episodes 2 -o board");
+}
+
 #[test]
 fn a_scoreboard_lists_what_holds_and_says_what_does_not() {
     let (folder, path, claim) = claimed("claim_board");

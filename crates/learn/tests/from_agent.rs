@@ -85,12 +85,34 @@ fn a_file_of_another_network_is_refused_and_nothing_is_left_behind() {
     config.network.dense = vec![96];
     let second = tiny::directory("from-other-second");
     let refused = tiny::run(Start::From(config.clone(), file.clone()), &second).0.unwrap_err();
-    assert!(refused.contains("does not fit"), "{refused}");
+    assert!(refused.contains("does not fit") && refused.contains("--init-from"), "{refused}");
+    assert!(!second.exists());
+    // A run's checkpoint likewise, which said a tensor's name and nothing to do.
+    let refused = tiny::run(Start::From(config.clone(), run.clone()), &second).0.unwrap_err();
+    assert!(refused.contains("does not fit") && refused.contains("--init-from"), "{refused}");
     assert!(!second.exists());
     fs::write(&file, "no agent").unwrap();
     let refused = tiny::run(Start::From(config, file.clone()), &second).0.unwrap_err();
     assert!(refused.contains("export-agent"), "{refused}");
     assert!(!second.exists());
+    fs::remove_dir_all(run).unwrap();
+    fs::remove_file(file).unwrap();
+}
+
+/// A policy of such weights plays one action for ever, and a claim of it held.
+#[test]
+fn a_file_of_weights_that_are_no_numbers_is_refused() {
+    let (_, run, file) = trained("from-no-numbers");
+    let mut bytes = fs::read(&file).unwrap();
+    let (head, facts) = safetensors::SafeTensors::read_metadata(&bytes).unwrap();
+    let tensors = facts.tensors();
+    let (name, scale) = tensors.iter().find(|(name, _)| name.ends_with(".scale")).unwrap();
+    let (name, at) = (name.trim_end_matches(".scale").to_string(), 8 + head + scale.data_offsets.0);
+    for wrong in [f32::NAN, f32::INFINITY] {
+        bytes[at..at + 4].copy_from_slice(&wrong.to_le_bytes());
+        let refused = AgentFile::parse(&bytes).err().unwrap();
+        assert!(refused.contains(&name) && refused.contains("no finite number"), "{refused}");
+    }
     fs::remove_dir_all(run).unwrap();
     fs::remove_file(file).unwrap();
 }

@@ -67,7 +67,7 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
             refused.iter().map(|(claim, why)| json!({ "claim": claim, "why": why })).collect();
         say!(
             "{}",
-            json!({ "page": page.display().to_string(), "listed": paths.len() - refused.len(), "refused": list })
+            json!({ "page": page.display().to_string(), "hold": paths.len() - refused.len(), "refused": list })
         );
     } else {
         say!("{}: lists {} of {} claims", page.display(), paths.len() - refused.len(), paths.len());
