@@ -99,16 +99,36 @@ fn a_refused_claim_leaves_the_earlier_one() {
     assert!(said.contains("--name"), "{said}");
 }
 
+/// A sweep of a small run.
+fn sweep(more: &str) -> String {
+    format!(
+        "scenarios = [\"RemedyRush\"]\nalgorithms = [\"PPO\"]\nframes = 64\nout = \"runs\"\n[options]\nenvs = 2\nthreads = 1\n\
+         size = \"64x48\"\neval-every = 64\n[settings]\nsampling.rollout = 8\nnetwork.dense = [32]\nnetwork.recurrent = 32\n\
+         evaluation.episodes = 1\nevaluation.confirming_episodes = 2\n{more}"
+    )
+}
+
+/// A budget of 5 is Remedy Rush's own: under another name it was trained again.
+#[test]
+fn runs_of_equal_settings_are_made_once() {
+    let folder = Folder::new("sweep_equal");
+    folder.file("own.toml", sweep("").as_bytes());
+    folder.ok("sweep own.toml");
+    let of_budgets = |list: &str| {
+        sweep("").replace("threads = 1\n", &format!("threads = 1\nsafety-budget = {list}\n"))
+    };
+    folder.file("budgets.toml", of_budgets("[5, 7]").as_bytes());
+    let said = folder.ok("sweep budgets.toml");
+    assert!(said.contains("1 finished, 1 had been finished before"), "{said}");
+    folder.file("twice.toml", of_budgets("[9, \"9.0\"]").as_bytes());
+    let (said, noted) = folder.both("sweep twice.toml");
+    assert!(noted.contains("1 of 2 runs repeat others"), "{noted}");
+    assert!(said.contains("1 finished, 0 had been finished before"), "{said}");
+}
+
 #[test]
 fn a_sweep_does_not_take_a_run_of_other_settings_for_its_own() {
     let folder = Folder::new("sweep_settings");
-    let sweep = |more: &str| {
-        format!(
-            "scenarios = [\"RemedyRush\"]\nalgorithms = [\"PPO\"]\nframes = 64\nout = \"runs\"\n[options]\nenvs = 2\nthreads = 1\n\
-             size = \"64x48\"\neval-every = 64\n[settings]\nsampling.rollout = 8\nnetwork.dense = [32]\nnetwork.recurrent = 32\n\
-             evaluation.episodes = 1\nevaluation.confirming_episodes = 2\n{more}"
-        )
-    };
     folder.file("s.toml", sweep("").as_bytes());
     folder.ok("sweep s.toml");
     folder.ok("sweep s.toml");

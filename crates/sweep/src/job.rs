@@ -107,6 +107,29 @@ impl Job {
         self.arguments.iter().map(|word| word.to_string_lossy())
     }
 
+    /// The directories of the other runs of its environment, algorithm and seed in the same folder,
+    /// in the order of their names.
+    #[must_use]
+    pub fn siblings(&self) -> Vec<PathBuf> {
+        let up = if self.options.is_empty() { 1 } else { 2 };
+        let Some(family) = self.directory.ancestors().nth(up) else { return Vec::new() };
+        let options = std::fs::read_dir(family).into_iter().flatten().flatten();
+        let own = format!("seed{}", self.seed);
+        let mut found: Vec<PathBuf> =
+            options.map(|entry| entry.path().join(&own)).chain([family.join(&own)]).collect();
+        found.retain(|directory| *directory != self.directory && directory.is_dir());
+        found.sort();
+        found
+    }
+
+    /// Gives it another directory: that of an equal run.
+    pub fn move_to(&mut self, directory: PathBuf) {
+        if let Some(out) = self.arguments.iter().position(|word| word == "--out") {
+            self.arguments[out + 1] = directory.clone().into_os_string();
+        }
+        self.directory = directory;
+    }
+
     /// Adds an option of `hasard train`, which leaves its directory as it is.
     pub fn add_option(&mut self, name: &str, value: &str) {
         self.arguments.extend([format!("--{name}"), value.to_owned()].map(OsString::from));

@@ -3,6 +3,7 @@
 pub(super) mod plan;
 mod progress;
 mod rescale;
+mod share;
 
 use crate::args::SweepArgs;
 use crate::failure::{Failure, Outcome};
@@ -13,6 +14,7 @@ use hasard_sweep::{Event, Job, OptionValue, Stop, Summary, Sweep, paper, run_job
 use plan::Plan;
 use progress::Progress;
 use serde_json::json;
+use share::share;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -36,7 +38,14 @@ pub fn run(args: &SweepArgs) -> Outcome {
         }
         configs = settings(&jobs)?;
     }
-    let pairs: Vec<(Job, TrainConfig)> = jobs.iter().cloned().zip(configs).collect();
+    let all = jobs.len();
+    let pairs = share(jobs.into_iter().zip(configs).collect());
+    if pairs.len() < all && !args.json {
+        note!(
+            "hasard: {} of {all} runs repeat others by options that come to the same settings; each is made once",
+            all - pairs.len()
+        );
+    }
     pairs.iter().try_for_each(|(job, config)| fits(job, config))?;
     if args.dry_run {
         return list(args, &pairs, sweep.parallel);
