@@ -7,6 +7,8 @@
 //! noise. Beyond the budget, where there is no barrier (the paper begins within it), the largest
 //! penalty rules.
 
+use serde_json::{Value, json};
+
 use crate::algorithms::surrogate::{lagrangian_advantages, standardised};
 use crate::algorithms::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
@@ -67,6 +69,19 @@ impl Algorithm for Ipo {
     fn multipliers(&self) -> Vec<f64> {
         self.penalties.clone()
     }
+
+    fn save(&self) -> Value {
+        json!(self.penalties)
+    }
+
+    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
+        // Older checkpoints have none: the first rollout or minibatch sets them.
+        let saved: Option<Vec<f64>> = serde_json::from_value(state.clone())?;
+        if let Some(saved) = saved.filter(|saved| saved.len() == self.penalties.len()) {
+            self.penalties = saved;
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]
@@ -106,5 +121,20 @@ mod tests {
             assert_eq!(ipo(cost, 50.0), 10.0);
         }
         assert_eq!(ipo(0.0, 0.0), 10.0);
+    }
+
+    /// A run that went on began without penalty, and ended as another than the straight one where
+    /// penalties move after each minibatch.
+    #[test]
+    fn penalties_come_back() {
+        let config = TrainConfig::plain(AlgorithmKind::Ipo, Preset::Paper, EnvConfig::new("test"));
+        let (mut before, mut after) = (Ipo::new(&config), Ipo::new(&config));
+        before.constrain(&[Signal::steady(40.0, 50.0, 525.0)]);
+        after.load(&before.save()).unwrap();
+        assert_eq!(
+            (after.multipliers(), after.multipliers()[0] > 0.0),
+            (before.multipliers(), true)
+        );
+        after.load(&Value::Null).unwrap();
     }
 }

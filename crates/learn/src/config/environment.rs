@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use hasard_envs::{
     ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, Mixture,
-    ObservationKind, RuleSet, Scenario, VecEnv, VecOptions,
+    ObservationKind, RuleSet, Scenario, VecEnv, VecOptions, scenarios::episode_steps,
 };
 use serde::{Deserialize, Serialize};
 
@@ -145,6 +145,14 @@ impl EnvConfig {
     pub fn env_id(&self) -> Result<EnvId, LearnError> {
         EnvId::within(self.scenario_file.map(OwnScenario::scenario), &self.id)
             .map_err(|error| LearnError::Config(error.to_string()))
+    }
+
+    /// Policy steps of its longest episode, if it has tasks of files; those of the benchmark all have
+    /// the same, which presets know.
+    pub(crate) fn own_episode_steps(&self) -> Option<u32> {
+        let (ids, rules) = (self.env_ids().ok()?, self.rule_set().ok()?);
+        let steps = |id: &EnvId| episode_steps(*id, rules, self.hard, self.frame_skip);
+        ids.iter().any(|id| id.scenario.file.is_some()).then(|| ids.iter().map(steps).max())?
     }
 
     /// The cost terms of its episodes; nothing for ids that are not registered, such as those of

@@ -16,6 +16,10 @@ impl TrainConfig {
             self.env.id = id_at(&self.env, last.level);
         }
         self.curriculum = lessons;
+        // Levels of a file may differ in length.
+        let longest =
+            (0..self.lessons()).filter_map(|one| self.lesson(one).env.own_episode_steps());
+        self.episode_steps = longest.max().unwrap_or(self.episode_steps);
     }
 
     /// Number of lessons; 1 without a curriculum.

@@ -19,7 +19,8 @@ impl TrainConfig {
         let tables = preset == Preset::Tables;
         let released = preset == Preset::Released || tables;
         let cores = std::thread::available_parallelism().map_or(1, usize::from).min(16);
-        let episode_steps = (EPISODE_TICS / env.frame_skip.max(1)).max(1);
+        let own_steps = env.own_episode_steps();
+        let episode_steps = own_steps.unwrap_or(EPISODE_TICS / env.frame_skip.max(1)).max(1);
         let scenario = env.scenario();
         let separate = algorithm.separates_networks();
         // As their papers have it: ten passes over minibatches of 64 steps. The benchmark's own
@@ -141,7 +142,12 @@ impl TrainConfig {
                 saute_unsafe_reward: scenario
                     .map_or(-0.01, |scenario| scenario.saute_unsafe_reward),
                 saute_visible: !released,
-                saute_horizon: f64::from(if released { EPISODE_TICS } else { episode_steps }),
+                saute_horizon: f64::from(if released {
+                    // It counts tics where the worlds are stepped by four of them.
+                    own_steps.map_or(EPISODE_TICS, |steps| steps * env.frame_skip)
+                } else {
+                    episode_steps
+                }),
                 trust_radius: 0.01,
                 conjugate_iterations: 10,
                 fisher_fraction: if released { 1.0 } else { 0.1 },

@@ -228,6 +228,9 @@ impl TrainConfig {
                 "above 0, for what is left of it is measured in its units",
             );
         }
+        if self.algorithm == AlgorithmKind::PpoSaute && self.budget_share == 0.0 {
+            return refuse("budget_share of PPOSaute", &0, "above 0, as its budget is");
+        }
         self.check_annealing()?;
         self.check_value_phase()
     }

@@ -2,6 +2,7 @@
 
 use crate::config::TrainConfig;
 use crate::random::{Purpose, Stream};
+use crate::threads::deal;
 
 /// The epochs over one rollout.
 #[derive(Clone, Debug)]
@@ -49,7 +50,7 @@ impl Epochs {
             Stream::new(self.seed, Purpose::Shuffle, self.rollout, self.first + epoch as u64)
                 .shuffle(&mut lanes);
         }
-        lanes.chunks(self.lanes.div_ceil(self.minibatches)).map(<[usize]>::to_vec).collect()
+        deal(self.lanes, self.minibatches).map(|part| lanes[part].to_vec()).collect()
     }
 
     /// Whether the policy has moved far enough; where no target is set its divergence is not asked
@@ -80,6 +81,16 @@ mod tests {
         assert_eq!(all, (0..8).collect::<Vec<_>>());
         assert_ne!(first, second);
         assert_ne!(first, Epochs::new(&config, 4, 8).minibatches(0));
+        // 6 lanes in 4 minibatches were dealt into 3.
+        for (lanes, count) in
+            (1..=40).flat_map(|lanes| (1..=lanes).map(move |count| (lanes, count)))
+        {
+            config.learning.minibatches = count;
+            let sizes: Vec<usize> =
+                Epochs::new(&config, 0, lanes).minibatches(0).iter().map(Vec::len).collect();
+            assert_eq!((sizes.len(), sizes.iter().sum()), (count, lanes));
+            assert!(sizes.iter().max().unwrap() - sizes.iter().min().unwrap() <= 1);
+        }
         assert!(epochs.end_at(|| 0.03) && !epochs.end_at(|| 0.01));
         let endless = Epochs { target_kl: None, ..epochs };
         assert!(!endless.end_at(|| panic!("nobody asks")));

@@ -70,25 +70,32 @@ fn understand(text: &str) -> Option<Selected> {
 
 fn evaluation(value: &Value) -> Option<Evaluation> {
     let episodes = value.get("episodes")?.as_u64()? as usize;
-    let estimate = |value: &Value| {
+    let estimate = |is_cost: bool, value: &Value| {
         let mean = value.get("mean")?.as_f64()?;
-        // Where costs are skewed the run gives a bootstrap's ends: the upper one is what budgets
-        // are held against.
-        let upper = value.get("bootstrap").and_then(|ends| ends.get(1)?.as_f64());
-        let half_width = value.get("half_width").and_then(Value::as_f64);
-        let half_width = upper.map(|high| high - mean).or(half_width).filter(|_| episodes > 1);
+        // Where values are skewed the run gives a bootstrap's ends. Budgets are held against the
+        // upper one of costs; of other values the farther one counts, so that neither is passed over.
+        let end = |index| value.get("bootstrap").and_then(|ends: &Value| ends.get(index)?.as_f64());
+        let arms = end(0).zip(end(1)).map(|(low, high)| (mean - low, high - mean));
+        let half_width = match arms {
+            Some((_, upper)) if is_cost => Some(upper),
+            Some((lower, upper)) => Some(lower.max(upper)),
+            None => value.get("half_width").and_then(Value::as_f64),
+        };
+        let half_width = half_width.filter(|_| episodes > 1);
         Some(Estimate { mean, half_width, n: episodes })
     };
     let named =
         [("return_mean", "episode_return"), ("cost_mean", "cost"), ("length_mean", "length")];
     let mut values: Vec<(String, Estimate)> = named
         .iter()
-        .filter_map(|(name, key)| Some(((*name).to_owned(), estimate(value.get(key)?)?)))
+        .filter_map(|(name, key)| {
+            Some(((*name).to_owned(), estimate(*key == "cost", value.get(key)?)?))
+        })
         .collect();
     for constraint in value.get("constraints").and_then(Value::as_array).into_iter().flatten() {
         if let (Some(term), Some(cost)) = (
             constraint.get("term").and_then(Value::as_str),
-            constraint.get("cost").and_then(estimate),
+            constraint.get("cost").and_then(|cost| estimate(true, cost)),
         ) {
             values.push((format!("cost/{term}"), cost));
         }
@@ -106,7 +113,7 @@ mod tests {
     #[test]
     fn a_closing_evaluation_is_read_whole() {
         let text = r#"{"frames":500,"chosen_by":{},"confirmed":true,"closing":{"episodes":100,"episode_return":{"mean":28.5,
-            "half_width":1.5},"cost":{"mean":42,"half_width":3,"bootstrap":[40,47.5]},"length":{"mean":525,"half_width":0},
+            "half_width":1.5,"bootstrap":[26,29]},"cost":{"mean":42,"half_width":3,"bootstrap":[40,47.5]},"length":{"mean":525,"half_width":0},
             "constraints":[{"term":"lava","budget":30,"cost":{"mean":29,"half_width":2}}]},
             "last":{"frames":600,"episodes":50,"episode_return":{"mean":30,"half_width":1},"cost":{"mean":49,"half_width":1}}}"#;
         let selected = understand(text).unwrap();
@@ -122,6 +129,8 @@ mod tests {
             (lava.mean, lava.high(), closing.get("return_mean").unwrap().mean),
             (29.0, 31.0, 28.5)
         );
+        // Its ± was the shorter arm.
+        assert_eq!(closing.get("return_mean").unwrap().low(), 26.0);
         assert_eq!(understand("{\"frames\":3,\"closing\":null}").unwrap().closing, None);
         assert_eq!(understand("{\"closing\":null}"), None);
     }

@@ -1,9 +1,9 @@
 //! What shorter runs need so that they make sense: multipliers that move as far in fewer updates.
 
 use crate::args::{Cli, Command};
-use crate::commands::train_settings::configuration;
+use crate::commands::train_settings::{configuration, with_rules};
 use crate::failure::Failure;
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
 use hasard_sweep::Job;
 
@@ -11,11 +11,10 @@ use hasard_sweep::Job;
 pub fn settings(job: &Job) -> Result<TrainConfig, Failure> {
     let line = std::iter::once("hasard".into()).chain(job.arguments.iter().cloned());
     let named = |why: &str| Failure::bad(format!("{}: {why}", job.command_line("hasard")));
-    match Cli::try_parse_from(line)
-        .map_err(|error| named(&crate::failure::usage_line(&error)))?
-        .command
-    {
-        Command::Train(args) => configuration(&args),
+    let wrong = |error: clap::Error| named(&crate::failure::usage_line(&error));
+    let typed = Cli::command().try_get_matches_from(line).map_err(wrong)?;
+    match (Cli::from_arg_matches(&typed).map_err(wrong)?.command, typed.subcommand()) {
+        (Command::Train(args), Some((_, typed))) => configuration(&with_rules(&args, typed)),
         _ => Err(named("not a training")),
     }
 }

@@ -114,6 +114,24 @@ fn shorter_runs_move_their_multipliers_as_far() {
     assert_eq!(sets("main --seeds 1 --levels 1 --scale 2"), 0, "longer runs keep their rates");
 }
 
+/// `train --preset tables` has the rules of the tables: runs of them are no runs of the paper's.
+#[test]
+fn runs_of_the_preset_tables_have_its_rules() {
+    let rules = |words: &str| -> Vec<String> {
+        settings(&jobs(words)).unwrap().into_iter().map(|config| config.env.rules).collect()
+    };
+    let main = "main --seeds 1 --levels 1 --scenarios RemedyRush --algos PPO";
+    assert_eq!(rules(&format!("{main} --preset tables")), ["tables"]);
+    assert_eq!(rules(&format!("{main} --preset tables --option rules=paper")), ["paper"]);
+    assert_eq!(rules(main), ["paper"]);
+    let share = |words: &str| {
+        let jobs = jobs(words);
+        let configs = settings(&jobs).unwrap();
+        share(jobs.into_iter().zip(configs).collect()).len()
+    };
+    assert_eq!(share(&format!("{main} --preset tables")), 1);
+}
+
 #[test]
 fn runs_that_end_before_their_first_episodes_are_refused() {
     let Err(Failure::BadInput(line)) = scaled("main --seeds 1 --scale 0.00001") else {

@@ -44,6 +44,9 @@ fn numbers_out_of_range_are_refused_by_name() {
         assert!(message.contains(&format!("{name} cannot be ")), "{setting}: {message}");
         assert!(message.len() < 120 && !message.contains('\n'), "{setting}: {message}");
     }
+    // The loss became NaN, and a lower rate was advised.
+    let saute = plain(AlgorithmKind::PpoSaute, Preset::Quick).with("budget_share=0").unwrap();
+    assert!(saute.check().unwrap_err().to_string().contains("budget_share of PPOSaute"));
     let message = answer("algorithm_settings.multiplier_rate=1e300").unwrap_err();
     assert_eq!(
         message,

@@ -48,3 +48,26 @@ fn bad_settings_are_refused_by_name() {
         TrainConfig::new(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("Nonsense-v0")).is_err()
     );
 }
+
+/// Every run of a file believed in 525 steps: budgets by the step, Saute's horizon and the random
+/// steps that spread worlds out were those of other episodes.
+#[test]
+fn episodes_of_a_file_are_as_long_as_it_says() {
+    let path = std::env::temp_dir().join(format!("hasard-short-{}.toml", std::process::id()));
+    let text = "[scenario]\nname = \"ShortOne\"\ntics = 70\n[map]\nbuiltin = \"RemedyRush\"\n[levels.2]\nscenario.tics = 141\n";
+    std::fs::write(&path, text).unwrap();
+    let id = hasard_envs::own::open(path.to_str().unwrap()).unwrap().to_string();
+    let env = EnvConfig::new(&id);
+    let config = |preset| TrainConfig::new(AlgorithmKind::PpoPid, preset, env.clone()).unwrap();
+    assert_eq!(config(Preset::Quick).episode_steps, 18);
+    let horizon = |preset| config(preset).algorithm_settings.saute_horizon;
+    assert_eq!((horizon(Preset::Paper), horizon(Preset::Released)), (18.0, 72.0));
+    let mut lessons = config(Preset::Quick);
+    let lesson = |level| crate::config::curriculum::Lesson { level, frames: 100 };
+    lessons.set_curriculum(vec![lesson(2), lesson(1)]);
+    assert_eq!(lessons.episode_steps, 36, "the longest of its levels");
+    let both = EnvConfig::new(&format!("{id},RemedyRushLevel1-v0"));
+    let mixed = TrainConfig::new(AlgorithmKind::PpoPid, Preset::Quick, both).unwrap();
+    assert_eq!(mixed.episode_steps, 525);
+    std::fs::remove_file(path).unwrap();
+}
