@@ -1,7 +1,7 @@
 //! How episodes are printed: a JSON object each, or a row of a table and the mean at its end.
 
 use crate::failure::{Failure, Outcome};
-use hasard_envs::{EnvOptions, Episode};
+use hasard_envs::{EnvOptions, Episode, RuleSet};
 use hasard_learn::config::Constraint;
 use hasard_learn::runs::evaluate::{Evaluation, Judgement, TaskEvaluation};
 use hasard_learn::runs::run_directory::episode_row;
@@ -14,19 +14,46 @@ pub struct EpisodeLines {
     json: bool,
     episodes: Vec<Episode>,
     constraints: Vec<Constraint>,
-    rules: Option<(&'static str, bool)>,
+    under: Option<Under>,
 }
 
-/// Adds the rule set to an episode's row, and whether it was played under the hard constraint.
-pub fn say_rules(row: &mut Value, (rules, hard): (&str, bool)) {
-    row["rules"] = json!(rules);
-    row["hard"] = json!(hard);
+/// What an episode was played under, as far as another episode's return is not comparable.
+#[derive(Clone, Copy)]
+struct Under {
+    rules: RuleSet,
+    hard: bool,
+    full_actions: bool,
+    frame_skip: u32,
+}
+
+impl Under {
+    fn of(options: &EnvOptions) -> Under {
+        let EnvOptions { rules, hard, full_actions, frame_skip, .. } = *options;
+        Under { rules, hard, full_actions, frame_skip }
+    }
+
+    /// Adds it to an episode's row: rule set and constraint always, the rest where it is not usual.
+    fn say(self, row: &mut Value) {
+        row["rules"] = json!(self.rules.name());
+        row["hard"] = json!(self.hard);
+        if self.full_actions {
+            row["full_actions"] = json!(true);
+        }
+        if self.frame_skip != EnvOptions::default().frame_skip {
+            row["frame_skip"] = json!(self.frame_skip);
+        }
+    }
+}
+
+/// Adds to an episode's row what it was played under.
+pub fn say_rules(row: &mut Value, options: &EnvOptions) {
+    Under::of(options).say(row);
 }
 
 impl EpisodeLines {
     /// Nothing printed yet.
     pub fn new(json: bool) -> EpisodeLines {
-        EpisodeLines { json, episodes: Vec::new(), constraints: Vec::new(), rules: None }
+        EpisodeLines { json, episodes: Vec::new(), constraints: Vec::new(), under: None }
     }
 
     /// The constraints that the summary judges by, each by its own term and budget.
@@ -37,7 +64,7 @@ impl EpisodeLines {
     /// The rule set, and whether under the hard constraint: files of episodes say it, so that a
     /// report compares like with like.
     pub fn played_under(&mut self, options: &EnvOptions) {
-        self.rules = Some((options.rules.name(), options.hard));
+        self.under = Some(Under::of(options));
     }
 
     /// Prints one episode; of several tasks, with the one that it is of.
@@ -45,8 +72,8 @@ impl EpisodeLines {
         let mut out = std::io::stdout().lock();
         if self.json {
             let mut row = episode_row(env, number, &episode);
-            if let Some(rules) = self.rules {
-                say_rules(&mut row, rules);
+            if let Some(under) = self.under {
+                under.say(&mut row);
             }
             writeln!(out, "{row}")?;
         } else {
@@ -102,24 +129,29 @@ impl EpisodeLines {
         }
         writeln!(
             out,
-            "mean of {}: {}, length {:.1} steps (+- is the 95 % confidence half-width)",
+            "mean of {}: {}, length {:.1} steps ({})",
             all.episodes,
             worth(&all),
-            all.length.mean
+            all.length.mean,
+            match all.episodes {
+                1 => "a single episode has no confidence interval",
+                _ => "+- is the 95 % confidence half-width",
+            }
         )?;
         writeln!(out, "cost of an episode: {}", tails_text(&all.tails, None))?;
         for one in &all.tasks {
             let (returns, cost) = (&one.episode_return, &one.cost);
             writeln!(
                 out,
-                "{}: return {:.3} +- {:.3}, cost {:.3} +- {:.3}, length {:.1}, {} episodes",
+                "{}: return {}, cost {}, length {:.1}, {}",
                 one.task,
-                returns.mean,
-                returns.half_width,
-                cost.mean,
-                cost.half_width,
+                with_interval(returns, one.episodes),
+                with_interval(cost, one.episodes),
                 one.length.mean,
-                one.episodes
+                match one.episodes {
+                    1 => "1 episode".into(),
+                    count => format!("{count} episodes"),
+                }
             )?;
         }
         for one in &all.constraints {
@@ -189,14 +221,16 @@ fn tails_text(tails: &Tails, budget: Option<f64>) -> String {
 /// Means of episodes and their 95 % confidence half-widths as JSON.
 pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
     let constraints: Vec<Value> = all.constraints.iter().map(judgement).collect();
+    // Of a single episode no interval is known.
+    let known = |number: f64| (all.episodes > 1).then_some(number);
     let mut row = json!({ "summary": {
         "episodes": all.episodes,
-        "return_mean": all.episode_return.mean, "return_ci95": all.episode_return.half_width,
-        "cost_mean": all.cost.mean, "cost_ci95": all.cost.half_width,
-        "cost_interval": [all.cost.low(), all.cost.high()], "cost_interval_by": interval_by(&all.cost),
+        "return_mean": all.episode_return.mean, "return_ci95": known(all.episode_return.half_width),
+        "cost_mean": all.cost.mean, "cost_ci95": known(all.cost.half_width),
+        "cost_interval": [known(all.cost.low()), known(all.cost.high())], "cost_interval_by": interval_by(&all.cost),
         "cost_tails": spread(&all.tails),
         "stats": mean_stats(episodes),
-        "length_mean": all.length.mean, "length_ci95": all.length.half_width,
+        "length_mean": all.length.mean, "length_ci95": known(all.length.half_width),
         "safety_budget": all.constraints.first().map(|one| one.budget),
         "within_budget": (!all.constraints.is_empty()).then(|| all.within()),
         "constraints": constraints,
@@ -215,23 +249,26 @@ pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
     row
 }
 
+/// A mean with its half-width, which a single episode does not have.
+fn with_interval(estimate: &Estimate, episodes: usize) -> String {
+    match episodes {
+        0 | 1 => format!("{:.3}", estimate.mean),
+        _ => format!("{:.3} +- {:.3}", estimate.mean, estimate.half_width),
+    }
+}
+
 /// Return and costs with their half-widths, each constraint beside its budget, for people.
 pub fn worth(all: &Evaluation) -> String {
     let (returns, cost) = (all.episode_return, all.cost);
-    let mut text = format!(
-        "return {:.3} +- {:.3}, cost {:.3} +- {:.3}",
-        returns.mean, returns.half_width, cost.mean, cost.half_width
-    );
+    let with_interval = |one: &Estimate| with_interval(one, all.episodes);
+    let mut text = format!("return {}, cost {}", with_interval(&returns), with_interval(&cost));
     for one in &all.constraints {
         let kept = if one.within() { "within" } else { "over" };
         match &one.term {
             None => text += &format!(" ({kept} the budget of {})", one.budget),
             Some(term) => {
-                let (mean, half) = (one.cost.mean, one.cost.half_width);
-                text += &format!(
-                    ", {term} {mean:.3} +- {half:.3} ({kept} its budget of {})",
-                    one.budget
-                );
+                let cost = with_interval(&one.cost);
+                text += &format!(", {term} {cost} ({kept} its budget of {})", one.budget);
             }
         }
     }

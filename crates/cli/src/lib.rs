@@ -168,7 +168,7 @@ pub fn evaluate(
             play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))?
         {
             let mut row = episode_row(&config.env.id, all.len() as u64, &episode);
-            episode_lines::say_rules(&mut row, (options.rules.name(), options.hard));
+            episode_lines::say_rules(&mut row, options);
             rows.push(row);
             all.push(episode);
         }

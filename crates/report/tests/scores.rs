@@ -39,6 +39,11 @@ fn a_seed_scores_by_its_last_policy_whatever_it_sees() {
             )
         })
         .collect();
+    // Of another action space, and of actions that are held longer: no chance of these agents'.
+    for (word, name) in [("\"full_actions\":true", "full"), ("\"frame_skip\":8", "skip8")] {
+        let other = episodes.replace("\"return\":", &format!("{word},\"return\":100"));
+        std::fs::write(runs.join(format!("random-{name}.jsonl")), other).unwrap();
+    }
     std::fs::write(runs.join("random-RemedyRushLevel1-v0-tables.jsonl"), episodes).unwrap();
     let out = folder.0.join("out");
     write_report(&[runs], &out, "Scores").unwrap();

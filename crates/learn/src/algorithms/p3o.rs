@@ -9,7 +9,8 @@
 //! (The paper's (1 - gamma)(J_C - d) is the excess of discounted costs a step; budgets here are on
 //! sums, whose excess a step is that over the T steps that episodes have.) The released code uses
 //! the plain ratio, the excess per step beside standardised advantages, and kappa 1, which leaves
-//! little more than a switch on the sign of the excess.
+//! little more than a switch on the sign of the excess. So does a single pass over a single
+//! minibatch, under any preset: ratios are 1 there and the surrogate is 0.
 
 use crate::algorithms::surrogate::{clip_ratio, standardised, standardised_by};
 use crate::algorithms::{Algorithm, Signal, ppo};

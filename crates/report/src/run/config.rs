@@ -296,6 +296,18 @@ impl Config {
         self.options.get("rules").map(String::as_str)
     }
 
+    /// Whether it acts in the full action space.
+    #[must_use]
+    pub fn full_actions(&self) -> bool {
+        self.options.get("full_actions").is_some_and(|full| full == "true")
+    }
+
+    /// Tics that each action is held.
+    #[must_use]
+    pub fn frame_skip(&self) -> u64 {
+        self.options.get("frame_skip").and_then(|tics| tics.parse().ok()).unwrap_or(4)
+    }
+
     /// Whether harm ends the episode.
     #[must_use]
     pub fn hard(&self) -> bool {

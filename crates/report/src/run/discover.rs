@@ -130,6 +130,15 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     stats: Vec::new(),
                     rules: header.options.get("rules").cloned(),
                     hard: header.options.get("hard").map(|hard| hard == "true"),
+                    full_actions: header
+                        .options
+                        .get("full_actions")
+                        .is_some_and(|full| full == "true"),
+                    frame_skip: header
+                        .options
+                        .get("frame_skip")
+                        .and_then(|n| n.parse().ok())
+                        .unwrap_or(4),
                     length: Some(f64::from(header.steps)),
                     seed: None,
                 };

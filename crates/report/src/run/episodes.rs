@@ -23,6 +23,10 @@ pub struct EpisodeResult {
     pub rules: Option<String>,
     /// Whether it was played under the hard constraint, if the line says.
     pub hard: Option<bool>,
+    /// Whether it was played in the full action space.
+    pub full_actions: bool,
+    /// Tics that each action was held.
+    pub frame_skip: u64,
     /// Policy steps, if known.
     pub length: Option<f64>,
     /// What it began from, if the line says.
@@ -102,6 +106,8 @@ pub fn read_episode_lines(
                 stats: named(&value, "stats"),
                 rules: value.get("rules").and_then(Value::as_str).map(String::from),
                 hard: value.get("hard").and_then(Value::as_bool),
+                full_actions: value.get("full_actions").and_then(Value::as_bool).unwrap_or(false),
+                frame_skip: value.get("frame_skip").and_then(Value::as_u64).unwrap_or(4),
                 length: number("length"),
                 seed: value.get("seed").and_then(Value::as_u64),
             }),

@@ -138,6 +138,8 @@ mod tests {
             stats: vec![],
             rules: None,
             hard: None,
+            full_actions: false,
+            frame_skip: 4,
             length: Some(525.0),
             seed: None,
         };

@@ -38,6 +38,8 @@ impl<'a> Baselines<'a> {
         let same = episodes.filter(|one| {
             one.rules.as_deref().unwrap_or("paper") == rules
                 && one.hard.unwrap_or(false) == config.hard()
+                && one.full_actions == config.full_actions()
+                && one.frame_skip == config.frame_skip()
         });
         Estimate::of(&same.map(|one| one.episode_return).collect::<Vec<_>>())
     }
@@ -117,13 +119,23 @@ impl<'a> Baselines<'a> {
             let rules = config.rules().unwrap_or("paper");
             if self.random(config).is_none() {
                 let env = &config.env;
-                let hard = if config.hard() { " --hard" } else { "" };
-                let file = format!(
-                    "random-{env}-{rules}{}.jsonl",
-                    if config.hard() { "-hard" } else { "" }
-                );
+                let (mut options, mut file) = (String::new(), format!("random-{env}-{rules}"));
+                for (differs, option, word) in [
+                    (config.hard(), " --hard".to_string(), "-hard".to_string()),
+                    (config.full_actions(), " --full-actions".into(), "-full".into()),
+                    (
+                        config.frame_skip() != 4,
+                        format!(" --frame-skip {}", config.frame_skip()),
+                        format!("-skip{}", config.frame_skip()),
+                    ),
+                ] {
+                    if differs {
+                        options += &option;
+                        file += &word;
+                    }
+                }
                 commands.push(format!(
-                    "hasard rollout {env} --policy random --episodes 100 --rules {rules}{hard} --json > runs/{file}"
+                    "hasard rollout {env} --policy random --episodes 100 --rules {rules}{options} --json > runs/{file}.jsonl"
                 ));
             }
             if self.ppo(group).is_none() {
