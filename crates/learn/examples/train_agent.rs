@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let id = rest.first().map_or("VolcanicVentureLevel1-v0", String::as_str);
     let mut config = TrainConfig::new(algorithm.parse()?, preset.parse()?, EnvConfig::new(id))?;
-    config.frames = frames.parse()?;
+    config.set_frames(frames.parse()?);
     for setting in rest.iter().skip(1) {
         config = config.with(setting)?;
     }

@@ -23,6 +23,7 @@
 //! [[grid]]                         # optional: several grids, each on top of what stands above
 //! algorithms = ["PPOCost"]
 //! options.cost-scale = [0.5, 2]
+//! settings.learning.rate = 0.0003
 //! ```
 
 use crate::grid::{Grid, Sweep};
@@ -126,15 +127,22 @@ fn understand(text: &str) -> Result<Sweep, String> {
         for (index, table) in grids.iter().enumerate() {
             let named = |problem: String| format!("grid {}: {problem}", index + 1);
             let table = table.as_table().ok_or("`grid` must be written as [[grid]]")?;
-            if let Some(key) = table.keys().find(|key| !GRID_KEYS.contains(&key.as_str())) {
+            let known = |key: &str| key == "settings" || GRID_KEYS.contains(&key);
+            if let Some(key) = table.keys().find(|key| !known(key)) {
                 return Err(named(format!(
-                    "unknown key `{key}`; known are {}",
+                    "unknown key `{key}`; known are settings, {}",
                     GRID_KEYS.join(", ")
                 )));
             }
             for base in &bases {
                 let mut grid = base.clone();
                 change(&mut grid, table).map_err(named)?;
+                if let Some(settings) = table.get("settings") {
+                    let settings = settings
+                        .as_table()
+                        .ok_or_else(|| named("`settings` must be a table".into()))?;
+                    named_settings("", settings, &mut grid.settings).map_err(named)?;
+                }
                 sweep.grids.push(grid);
             }
         }

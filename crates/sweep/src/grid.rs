@@ -4,6 +4,7 @@ use crate::job::Job;
 use crate::one_line;
 use crate::option::OptionValue;
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Most runs that one sweep may expand to; more is surely a slip of the pen.
@@ -30,6 +31,8 @@ pub struct Grid {
     /// Options of `hasard train` without dashes, and their values: more than one value is a further
     /// axis.
     pub options: Vec<(String, Vec<OptionValue>)>,
+    /// Settings of `config.json` and their values, over those of the sweep.
+    pub settings: Vec<(String, String)>,
 }
 
 /// One or more grids and where their runs go.
@@ -42,8 +45,8 @@ pub struct Sweep {
     /// Episodes that the agent of each finished run is evaluated on, kept in its directory as
     /// `eval.jsonl`; 0 for none.
     pub evaluate: u32,
-    /// Settings of `config.json` and their values, the same for every run; the folders of runs do
-    /// not say them.
+    /// Settings of `config.json` and their values, for every run; the folders of runs do not say
+    /// them.
     pub settings: Vec<(String, String)>,
     /// The grids; a run that several ask for is made once.
     pub grids: Vec<Grid>,
@@ -61,7 +64,7 @@ impl Sweep {
 
     fn expand(&self) -> Result<Vec<Job>, String> {
         let mut jobs: Vec<(usize, Job)> = Vec::new();
-        let mut seen: BTreeMap<PathBuf, u64> = BTreeMap::new();
+        let mut seen: BTreeMap<PathBuf, (u64, Vec<OsString>)> = BTreeMap::new();
         for grid in &self.grids {
             let mut expanded = 1usize;
             for length in [grid.environments().len(), grid.algorithms.len(), grid.seeds.len()]
@@ -87,19 +90,26 @@ impl Sweep {
                                 &options,
                             );
                             job.evaluate = self.evaluate;
-                            for (name, value) in &self.settings {
+                            for (name, value) in self.settings.iter().chain(&grid.settings) {
                                 job.add_option("set", &format!("{name}={value}"));
                             }
-                            match seen.insert(job.directory.clone(), job.frames) {
+                            let made = (job.frames, job.arguments.clone());
+                            match seen.insert(job.directory.clone(), made) {
                                 None => jobs.push((index, job)),
-                                Some(frames) if frames == job.frames => {}
-                                Some(frames) => {
+                                Some((frames, _)) if frames != job.frames => {
                                     return Err(format!(
                                         "two grids have the run {} with {frames} and with {} frames; give them an option that differs, or one `frames`",
                                         job.directory.display(),
                                         job.frames
                                     ));
                                 }
+                                Some((_, arguments)) if arguments != job.arguments => {
+                                    return Err(format!(
+                                        "two grids have the run {} with other settings; give them an option that differs, or one `settings`",
+                                        job.directory.display()
+                                    ));
+                                }
+                                Some(_) => {}
                             }
                         }
                     }

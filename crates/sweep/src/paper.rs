@@ -162,6 +162,7 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
         frames: 0,
         // The preset is always spelled out: that of `train` is another.
         options: vec![("preset".into(), vec![OptionValue::Text("paper".into())])],
+        settings: Vec::new(),
     };
     let grid = |table: &Value| {
         let mut grid = usual.clone();

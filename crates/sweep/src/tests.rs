@@ -45,6 +45,21 @@ fn settings_go_into_every_command_and_no_folder() {
         assert!(line.contains(part), "{part}: {line}");
     }
     assert!(!jobs[0].directory.to_string_lossy().contains("bfloat16"));
+    // A grid has its own over them; two grids that differ in nothing else have one folder.
+    let grids = |algorithms: &str| {
+        let text = format!(
+            "frames = 64\nscenarios = ['RemedyRush']\n[[grid]]\nalgorithms = ['PPO', 'P3O']\nsettings.learning.epochs = 3\n\
+             [[grid]]\nalgorithms = ['{algorithms}']\n"
+        );
+        Sweep::parse(&text).unwrap().jobs()
+    };
+    let of_grids: Vec<usize> = grids("CPO")
+        .unwrap()
+        .iter()
+        .map(|job| job.command_line("hasard").matches("epochs=3").count())
+        .collect();
+    assert_eq!(of_grids, [1, 1, 0]);
+    assert!(grids("PPO").unwrap_err().contains("with other settings"));
     let wrong = Sweep::parse("experiment = 'quick'\n[settings]\nlearning.rate = 2020-01-01\n");
     assert_eq!(
         wrong.unwrap_err(),

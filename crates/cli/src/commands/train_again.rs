@@ -43,8 +43,10 @@ pub fn command(config: &TrainConfig) -> String {
         words.push(format!("--curriculum {}", lessons.collect::<Vec<_>>().join(",")));
     }
     // What the preset makes of the same environment.
-    if let Ok(preset) = TrainConfig::new(config.algorithm, config.preset, env.clone()) {
-        let plain = TrainConfig { seed: config.seed, frames: config.frames, ..preset }.begun();
+    if let Ok(mut plain) = TrainConfig::new(config.algorithm, config.preset, env.clone()) {
+        plain.seed = config.seed;
+        plain.set_frames(config.frames);
+        let plain = plain.begun();
         if plain.constraints != config.constraints {
             words.extend(config.constraints.iter().map(|one| match &one.term {
                 None => format!("--safety-budget {}", one.budget),

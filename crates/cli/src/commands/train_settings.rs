@@ -28,7 +28,7 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         .map_err(Failure::bad)?;
     config.seed = args.seed;
     config.device.clone_from(&args.device);
-    config.frames = args.frames.unwrap_or(config.frames);
+    config.set_frames(args.frames.unwrap_or(config.frames));
     config.sampling.synchronous = args.sync || (args.device == "cpu" && !args.asynchronous);
     config.learning.portable = args.portable;
     if let Some(threads) = args.threads {
@@ -120,6 +120,10 @@ pub(super) mod tests {
             (AlgorithmKind::PpoPid, Preset::Quick, 10_000_000)
         );
         assert_eq!(config("--preset paper").unwrap().frames, 500_000_000);
+        let reference = |line: &str| config(line).unwrap().algorithm_settings.pid_reference_budget;
+        assert_eq!((reference(""), reference("--frames 2M")), (Some(201.0), Some(450.0)));
+        let set = "--frames 2M --set algorithm_settings.pid_reference_budget=45";
+        assert_eq!(reference(set), Some(45.0));
     }
 
     #[test]

@@ -13,6 +13,14 @@ use crate::config::{Convolution, Initialisation, RecurrentCell, second_order};
 const EPISODE_TICS: u32 = 2100;
 
 impl TrainConfig {
+    /// Makes the run so long, with what its preset makes of it.
+    pub fn set_frames(&mut self, frames: u64) {
+        self.frames = frames;
+        if self.preset == Preset::Quick {
+            self.algorithm_settings.pid_reference_budget = Some(reference_budget(frames));
+        }
+    }
+
     /// As [`TrainConfig::new`] for worlds that are in no registry, such as those of tests.
     #[must_use]
     pub fn plain(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> TrainConfig {
@@ -185,9 +193,16 @@ impl TrainConfig {
     }
 }
 
+/// The reference budget of `quick`. What a multiplier has to become is a matter of the task, and a
+/// short run has few updates to get there: 450 for 2 million frames, less for longer ones, with the
+/// root of their length (docs/tried/levers.md).
+fn reference_budget(frames: u64) -> f64 {
+    (450.0 * (2_000_000.0 / frames.max(1) as f64).sqrt()).round().clamp(45.0, 450.0)
+}
+
 /// Settings that learn within minutes.
 fn quicken(config: &mut TrainConfig) {
-    config.frames = 10_000_000;
+    config.set_frames(10_000_000);
     // A fifth of the arithmetic of the original's network: three times the frames in the same time,
     // and no less learned from each (docs/tried/quick_network.md).
     config.network.convolutions = vec![
@@ -203,7 +218,7 @@ fn quicken(config: &mut TrainConfig) {
     // A trust region is made for one step a rollout.
     let passes = if config.algorithm.separates_networks() { 1 } else { 2 };
     config.learning.epochs = passes;
-    config.learning.minibatches = passes;
+    config.learning.minibatches = if passes == 1 { 1 } else { 4 };
     // It would spare one pass in four.
     config.learning.reuse_forward = false;
     // Once a rollout, as much as 0.01 in each of its minibatches.
@@ -214,7 +229,6 @@ fn quicken(config: &mut TrainConfig) {
     // beforehand. docs/tried/multiplier_rate.md and levers.md have the numbers.
     config.algorithm_settings.pid_gains = (1.5, rate, 0.0);
     (config.algorithm_settings.pid_initial, config.algorithm_settings.pid_decay) = (0.0, 0.0);
-    config.algorithm_settings.pid_reference_budget = Some(450.0);
     config.budget_share = 0.8;
     config.reporting.report_seconds = 5.0;
 }
@@ -249,7 +263,7 @@ mod tests {
             make(AlgorithmKind::Trpo, Preset::Released).algorithm_settings.fisher_fraction,
             1.0
         );
-        let quick = make(AlgorithmKind::PpoLag, Preset::Quick);
+        let mut quick = make(AlgorithmKind::PpoLag, Preset::Quick);
         assert_eq!((paper.budget_share, quick.budget_share), (1.0, 0.8));
         for plain in [&paper, &released] {
             assert_eq!(
@@ -257,6 +271,21 @@ mod tests {
                 (None, 1.0)
             );
         }
+        // 450 * sqrt(2 / 10), and between 45 and 450.
+        let reference = |config: &TrainConfig| config.algorithm_settings.pid_reference_budget;
+        assert_eq!(reference(&quick), Some(201.0));
+        for (frames, budget) in
+            [(1, 450.0), (2_000_000, 450.0), (8_000_000, 225.0), (u64::MAX, 45.0)]
+        {
+            quick.set_frames(frames);
+            assert_eq!((quick.frames, reference(&quick)), (frames, Some(budget)));
+        }
+        let mut longer = paper.clone();
+        longer.set_frames(7);
+        assert_eq!(longer, TrainConfig { frames: 7, ..paper.clone() });
+        assert_eq!((quick.learning.epochs, quick.learning.minibatches), (2, 4));
+        let trust = make(AlgorithmKind::Cpo, Preset::Quick).learning;
+        assert_eq!((trust.epochs, trust.minibatches), (1, 1));
         let text = serde_json::to_string(&paper).unwrap();
         assert_eq!(serde_json::from_str::<TrainConfig>(&text).unwrap(), paper);
     }
