@@ -310,11 +310,11 @@ class _State:
     terms: list[list[float]] | None
 
 
-def report(runs: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> Path:
+def report(runs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> Path:
     """Writes one page of tables and curves from run directories, as `hasard report` does.
 
     Args:
-        runs: directories, or folders of them.
+        runs: a directory or a folder of them, or several.
         out: the folder of the page.
 
     Returns:
@@ -323,7 +323,8 @@ def report(runs: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) 
     Raises:
         HasardError, with the program's line of what went wrong.
     """
-    _run(["report", *[os.fspath(run) for run in runs], "-o", os.fspath(out)])
+    several = [runs] if isinstance(runs, (str, os.PathLike)) else runs
+    _run(["report", *[os.fspath(run) for run in several], "-o", os.fspath(out)])
     return Path(out)
 
 

@@ -6,6 +6,7 @@ use hasard_learn::config::Constraint;
 use hasard_learn::runs::evaluate::{Evaluation, Judgement, TaskEvaluation};
 use hasard_learn::runs::run_directory::episode_row;
 use hasard_learn::statistics::{Estimate, Tails};
+use hasard_report::document::count;
 use serde_json::{Map, Value, json};
 use std::io::Write;
 
@@ -138,7 +139,11 @@ impl EpisodeLines {
                 _ => "+- is the 95 % confidence half-width",
             }
         )?;
-        writeln!(out, "cost of an episode: {}", tails_text(&all.tails, None))?;
+        // Of a single budget for the whole cost, one line says both.
+        let whole = all.constraints.iter().find(|one| one.term.is_none());
+        let budget = whole.map(|one| one.budget);
+        let tails = whole.map_or(&all.tails, |one| &one.tails);
+        writeln!(out, "cost of an episode: {}", tails_text(tails, budget))?;
         for one in &all.tasks {
             let (returns, cost) = (&one.episode_return, &one.cost);
             writeln!(
@@ -148,19 +153,12 @@ impl EpisodeLines {
                 with_interval(returns, one.episodes),
                 with_interval(cost, one.episodes),
                 one.length.mean,
-                match one.episodes {
-                    1 => "1 episode".into(),
-                    count => format!("{count} episodes"),
-                }
+                count(one.episodes, "episode")
             )?;
         }
-        for one in &all.constraints {
-            writeln!(
-                out,
-                "{}: {}",
-                one.term.as_deref().unwrap_or("under the budget"),
-                tails_text(&one.tails, Some(one.budget))
-            )?;
+        for (one, term) in all.constraints.iter().filter_map(|one| Some((one, one.term.as_ref()?)))
+        {
+            writeln!(out, "{term}: {}", tails_text(&one.tails, Some(one.budget)))?;
         }
         let stats: Vec<String> = mean_stats(&self.episodes)
             .as_object()

@@ -101,15 +101,11 @@ pub fn report_usage(error: &clap::Error, first: Option<&OsString>) -> u8 {
 
 /// A usage error as one line.
 pub fn usage_line(error: &clap::Error) -> String {
-    // A flag that is a setting of `config.json`, by our name or another program's: `--lr`.
     if error.kind() == ErrorKind::UnknownArgument
         && let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg)
-        && let Some(setting) =
-            hasard_learn::config::explained::named(&flag.trim_start_matches('-').replace('-', "_"))
+        && let Some(line) = elsewhere(flag)
     {
-        return presentable(&format!(
-            "there is no {flag}; of a training that is --set {setting}=VALUE"
-        ));
+        return presentable(&line);
     }
     let text = error.render().to_string();
     let parts: Vec<&str> = text
@@ -119,12 +115,35 @@ pub fn usage_line(error: &clap::Error) -> String {
             !line.is_empty()
                 && !line.starts_with("Usage:")
                 && !line.starts_with("For more information")
+                // No word of this program begins with dashes.
+                && !line.starts_with("tip: to pass")
         })
         .collect();
     let line = presentable(&parts.join("; ").replace(":; ", ": "));
     // The standard library's words for what is no number without a sign.
     let line = line.replace("invalid digit found in string", "give a whole number, 0 or more");
     line.strip_prefix("error: ").unwrap_or(&line).to_string()
+}
+
+/// Where a flag that a command does not know is: on the Python package's program, on `train`, or
+/// among the settings of `config.json`, by our name or another program's, such as `--lr`.
+fn elsewhere(flag: &str) -> Option<String> {
+    use clap::CommandFactory;
+    let name = flag.trim_start_matches('-');
+    if ["on", "workers"].contains(&name) {
+        return Some(format!("there is no {flag}; only the `hasard` of `pip install .` has it"));
+    }
+    let train = crate::args::Cli::command();
+    let train = train.find_subcommand("train")?;
+    let of_train = |name: &str| train.get_arguments().any(|one| one.get_long() == Some(name));
+    if of_train(name) {
+        return Some(format!("{flag} is of `hasard train`, not of this command"));
+    }
+    let setting = hasard_learn::config::explained::named(&name.replace('-', "_"))?;
+    Some(match crate::commands::flag_of(&setting).filter(|flag| of_train(flag)) {
+        Some(own) => format!("there is no {flag}; of a training that is --{own}"),
+        None => format!("there is no {flag}; of a training that is --set {setting}=VALUE"),
+    })
 }
 
 /// The program and, if the first word names one, its command: whose help says more.

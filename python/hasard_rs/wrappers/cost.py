@@ -16,6 +16,16 @@ class CostWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         gymnasium.Wrapper.__init__(self, env)
         self.episode_cost = 0.0
 
+    @property
+    def cost_terms(self) -> Any:
+        """A `CostTerm` for each named part of the cost, as `Env.cost_terms`."""
+        return self.env.get_wrapper_attr("cost_terms")
+
+    @property
+    def safety_budget(self) -> float:
+        """Cost that an episode may have, as `Env.safety_budget`."""
+        return float(self.env.get_wrapper_attr("safety_budget"))
+
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Starts an episode; seed and options as for `Env.reset`, and so is what it returns."""
         observation, info = self.env.reset(seed=seed, options=options)

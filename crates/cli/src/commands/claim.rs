@@ -10,6 +10,7 @@ use hasard_learn::runs::agent::run_config;
 use hasard_learn::runs::agent_file::{AgentFile, export};
 use hasard_learn::runs::claim::{Claim, measure};
 use hasard_media::files::write_whole;
+use hasard_report::document::count;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -73,11 +74,11 @@ pub fn run(args: &ClaimArgs) -> Outcome {
     } else {
         let (evaluation, budget) = (&measured.evaluation, measured.budget);
         say!(
-            "{}: return {:.3}, cost {:.3} of {budget} over {} episodes; anybody can check it: {verified}",
+            "{}: return {:.3}, cost {:.3} of {budget} over {}; anybody can check it: {verified}",
             path.display(),
             evaluation.episode_return.mean,
             evaluation.cost.mean,
-            evaluation.episodes
+            count(evaluation.episodes, "episode")
         );
     }
     Ok(())

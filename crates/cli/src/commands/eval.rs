@@ -14,6 +14,7 @@ use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config}
 use hasard_learn::runs::calibration::{calibrate, predictions};
 use hasard_learn::runs::evaluate::{Trace, play_traced};
 use hasard_learn::runs::session::MakeWorlds;
+use hasard_media::files::write_whole;
 use hasard_play::Film;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -192,8 +193,7 @@ fn write_calibration(
             one.episode, one.step, one.predicted, one.observed, one.cut
         );
     }
-    std::fs::write(path, text)
-        .map_err(|error| Failure::bad(format!("{}: cannot be written: {error}", path.display())))?;
+    write_whole(path, text.as_bytes()).map_err(Failure::bad)?;
     Ok(json!(calibrate(&all, config)))
 }
 

@@ -28,3 +28,5 @@ pub mod train;
 mod train_again;
 mod train_settings;
 pub mod verify;
+
+pub use resume::flag_of;

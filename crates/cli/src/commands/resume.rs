@@ -43,6 +43,39 @@ const DECIDES: &[(&str, &[&str])] = &[
     ("published_colours", &["/env/published_colours"]),
 ];
 
+/// The flag of `train` that decides a setting, without dashes.
+pub fn flag_of(setting: &str) -> Option<String> {
+    let pointer = setting_pointer(setting);
+    DECIDES.iter().find(|(_, pointers)| pointers.contains(&&*pointer)).map(|(id, _)| word_of(id))
+}
+
+fn word_of(id: &str) -> String {
+    if id == "asynchronous" { "async".into() } else { id.replace('_', "-") }
+}
+
+/// Refuses a fresh run of which a flag and `--set` decide the same; and a seed by `--set`, which
+/// the folder's name would not have.
+pub fn check_said_once(args: &TrainArgs, typed: &ArgMatches) -> Result<(), Failure> {
+    for text in &args.set {
+        let name = text.split('=').next().unwrap_or_default();
+        if name == "seed" {
+            return Err(Failure::bad("--set seed: write --seed, by which the run is named"));
+        }
+        let pointer = setting_pointer(name);
+        let same = DECIDES.iter().find(|(id, pointers)| {
+            typed.value_source(id) == Some(ValueSource::CommandLine)
+                && pointers.contains(&&*pointer)
+        });
+        if let Some((id, _)) = same {
+            return Err(Failure::bad(format!(
+                "--set {name} and --{} decide the same; leave one of them out",
+                word_of(id)
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// The settings that are to be others from here on, each as `NAME=VALUE`. Flags that were typed and
 /// say something else than the run's settings are refused where a run cannot change; those that
 /// repeat them are welcome: a sweep resumes a run with the command that began it.
@@ -72,8 +105,7 @@ pub fn settings(
     let flags = DECIDES.iter().filter(|(id, _)| given(id));
     let mut places: Vec<(String, String)> = flags
         .flat_map(|(id, pointers)| {
-            let flag = if *id == "asynchronous" { "async" } else { id };
-            let flag = format!("--{}", flag.replace('_', "-"));
+            let flag = format!("--{}", word_of(id));
             pointers.iter().map(move |pointer| (flag.clone(), (*pointer).to_string()))
         })
         .collect();

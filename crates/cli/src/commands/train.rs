@@ -20,6 +20,7 @@ use hasard_learn::runs::selection::Selection;
 use hasard_learn::runs::trainer::{Hooks, Start, Summary, train_together};
 use hasard_learn::team::Team;
 use hasard_media::shell::quote;
+use hasard_report::document::count;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -62,6 +63,7 @@ pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
     } else {
         let config = configuration(&with_rules(args, typed))?;
         check_length(args, &config)?;
+        super::resume::check_said_once(args, typed)?;
         let start = match &args.init_from {
             Some(other) => Start::From(config.clone(), zoo::find(other.as_os_str())?),
             None => Start::Fresh(config.clone()),
@@ -231,17 +233,17 @@ fn headline(selection: &Selection, stopped: bool) -> Vec<String> {
         (false, _) => "NOT within",
     };
     let so_far = if stopped { " so far" } else { "" };
-    let (frames, episodes) = (selection.selected.frames, all.episodes);
+    let (frames, episodes) = (selection.selected.frames, count(all.episodes, "episode"));
     let mut lines = Vec::new();
     if let Some(last) = &selection.last {
         lines.push(format!(
-            "last policy: {}, {} episodes of their own",
+            "last policy: {}, {} of their own",
             worth(&last.closing),
-            last.closing.episodes
+            count(last.closing.episodes, "episode")
         ));
     }
     lines.push(format!(
-        "selected{so_far}: the checkpoint of {frames} frames, {kept} its budget; {}, {episodes} episodes of their own",
+        "selected{so_far}: the checkpoint of {frames} frames, {kept} its budget; {}, {episodes} of their own",
         worth(all)
     ));
     lines

@@ -46,6 +46,10 @@ pub fn command(config: &TrainConfig) -> String {
     if let Ok(mut plain) = TrainConfig::new(config.algorithm, config.preset, env.clone()) {
         plain.seed = config.seed;
         plain.set_frames(config.frames);
+        if plain.sampling.lanes != config.sampling.lanes {
+            words.push(format!("--envs {}", config.sampling.lanes));
+            plain.set_lanes(config.sampling.lanes);
+        }
         let plain = plain.begun();
         if plain.constraints != config.constraints {
             words.extend(config.constraints.iter().map(|one| match &one.term {
@@ -63,7 +67,6 @@ pub fn command(config: &TrainConfig) -> String {
                 "constraint_statistic" => {
                     words.push(format!("--constraint-statistic {}", config.constraint_statistic));
                 }
-                "sampling.lanes" => words.push(format!("--envs {value}")),
                 "sampling.synchronous" => words.push("--async".into()),
                 "learning.portable" => words.push("--portable".into()),
                 _ => words.push(format!("--set {}", quote(Path::new(&format!("{name}={value}"))))),

@@ -36,7 +36,7 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         config.sampling.samplers = usize::from(threads);
     }
     if let Some(lanes) = args.envs {
-        config.sampling.lanes = lanes as usize;
+        config.set_lanes(lanes as usize);
     }
     if args.eval_every.is_some() {
         config.evaluation.every = args.eval_every;
@@ -59,7 +59,8 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     let mut config =
         config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     if let Some(text) = &args.curriculum {
-        let lessons = parse_curriculum(text, config.frames).map_err(Failure::bad)?;
+        let levels = config.env.env_id().map_or(3, |id| id.scenario.levels.max(1));
+        let lessons = parse_curriculum(text, config.frames, levels).map_err(Failure::bad)?;
         config.set_curriculum(lessons);
     }
     config.check().map_err(Failure::bad)?;

@@ -11,7 +11,7 @@ use crate::error::LearnError;
 /// A level, and how long it is trained.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub struct Lesson {
-    /// The level, 1 to 3.
+    /// The level, from 1.
     pub level: u8,
     /// Frames.
     pub frames: u64,
@@ -21,8 +21,8 @@ pub struct Lesson {
 const MOST_LESSONS: usize = 16;
 
 /// Understands `1,2,3`, where every level has an equal share of `frames`, or
-/// `1:400000,2:300000,3:300000`.
-pub fn parse_curriculum(text: &str, frames: u64) -> Result<Vec<Lesson>, LearnError> {
+/// `1:400000,2:300000,3:300000`; of a scenario of so many levels.
+pub fn parse_curriculum(text: &str, frames: u64, levels: u8) -> Result<Vec<Lesson>, LearnError> {
     let wrong = |why: &str| {
         LearnError::Config(format!(
             "curriculum '{text}': {why}; write levels such as 1,2,3, or LEVEL:FRAMES such as 1:400000,2:600000"
@@ -39,8 +39,8 @@ pub fn parse_curriculum(text: &str, frames: u64) -> Result<Vec<Lesson>, LearnErr
         let level = level
             .parse()
             .ok()
-            .filter(|level| (1..=3).contains(level))
-            .ok_or_else(|| wrong("levels are 1, 2 and 3"))?;
+            .filter(|level| (1..=levels).contains(level))
+            .ok_or_else(|| wrong(&format!("the levels are 1 to {levels}")))?;
         let own = own.map(|own| {
             own.parse()
                 .ok()
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn texts_become_lessons() {
         let lessons = |text: &str| -> Vec<(u8, u64)> {
-            parse_curriculum(text, 100)
+            parse_curriculum(text, 100, 3)
                 .unwrap()
                 .iter()
                 .map(|lesson| (lesson.level, lesson.frames))
@@ -85,18 +85,20 @@ mod tests {
         };
         assert_eq!(lessons("1,2,3"), [(1, 33), (2, 33), (3, 34)]);
         assert_eq!(lessons("2:5, 1:7"), [(2, 5), (1, 7)]);
+        // Tasks of files have others.
+        assert_eq!(parse_curriculum("4", 100, 4).unwrap(), [Lesson { level: 4, frames: 100 }]);
         for (wrong, word) in [
-            ("", "levels are"),
-            ("4", "levels are"),
+            ("", "levels are 1 to 3"),
+            ("4", "levels are 1 to 3"),
             ("1,2:5", "either"),
             ("1:0", "whole number"),
-            ("1,,2", "levels are"),
+            ("1,,2", "levels are 1 to 3"),
         ] {
-            let message = parse_curriculum(wrong, 100).unwrap_err().to_string();
+            let message = parse_curriculum(wrong, 100, 3).unwrap_err().to_string();
             assert!(message.contains(word) && !message.contains('\n'), "{wrong}: {message}");
         }
-        assert!(parse_curriculum("1,2,3", 2).is_err());
-        assert!(parse_curriculum(&"1,".repeat(1000), 2).is_err());
+        assert!(parse_curriculum("1,2,3", 2, 3).is_err());
+        assert!(parse_curriculum(&"1,".repeat(1000), 2, 3).is_err());
     }
 
     #[test]
@@ -105,7 +107,7 @@ mod tests {
         let mut config = TrainConfig::new(AlgorithmKind::PpoPid, Preset::Paper, env).unwrap();
         assert_eq!((config.lessons(), config.lesson_at(0), config.lesson_at(u64::MAX)), (1, 0, 0));
         assert_eq!(config.lesson(0), config);
-        config.set_curriculum(parse_curriculum("1:100,2:50,3:10", 0).unwrap());
+        config.set_curriculum(parse_curriculum("1:100,2:50,3:10", 0, 3).unwrap());
         assert_eq!((config.frames, config.env.id.as_str()), (160, "RemedyRushLevel3-v0"));
         let at = [0, 99, 100, 149, 150, 160, 9999].map(|frames| config.lesson_at(frames));
         assert_eq!(at, [0, 0, 1, 1, 2, 2, 2]);

@@ -96,7 +96,7 @@ pub struct LearningConfig {
     pub gamma: f64,
     /// Lambda of the advantage estimate.
     pub gae_lambda: f64,
-    /// Learning rate.
+    /// Learning rate; set alone, by `--set`, it is constant.
     pub rate: f64,
     /// Learning rate at the end of the schedule, reached linearly; `null` for a constant one.
     pub final_rate: Option<f64>,

@@ -21,6 +21,14 @@ impl TrainConfig {
         }
     }
 
+    /// Gives it so many worlds; `quick` has no more minibatches than those.
+    pub fn set_lanes(&mut self, lanes: usize) {
+        self.sampling.lanes = lanes;
+        if self.preset == Preset::Quick {
+            self.learning.minibatches = self.learning.minibatches.min(lanes.max(1));
+        }
+    }
+
     /// As [`TrainConfig::new`] for worlds that are in no registry, such as those of tests.
     #[must_use]
     pub fn plain(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> TrainConfig {
@@ -284,6 +292,12 @@ mod tests {
         longer.set_frames(7);
         assert_eq!(longer, TrainConfig { frames: 7, ..paper.clone() });
         assert_eq!((quick.learning.epochs, quick.learning.minibatches), (2, 4));
+        let few = |settings: &[&str]| {
+            let settings: Vec<String> = settings.iter().map(|one| (*one).to_string()).collect();
+            quick.with_all(&settings).unwrap().learning.minibatches
+        };
+        assert_eq!((few(&["sampling.lanes=2"]), few(&["sampling.lanes=64"])), (2, 4));
+        assert_eq!(few(&["learning.minibatches=3", "sampling.lanes=2"]), 3, "what is set stays");
         let trust = make(AlgorithmKind::Cpo, Preset::Quick).learning;
         assert_eq!((trust.epochs, trust.minibatches), (1, 1));
         let text = serde_json::to_string(&paper).unwrap();

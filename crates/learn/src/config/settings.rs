@@ -68,7 +68,8 @@ fn wrong(error: impl std::fmt::Display) -> LearnError {
 
 impl TrainConfig {
     /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`. A new learning rate
-    /// is a constant one, unless `learning.final_rate` is set after it.
+    /// is a constant one, unless `learning.final_rate` is set after it; for lanes see
+    /// [`TrainConfig::set_lanes`].
     ///
     /// # Errors
     /// When the text is no `NAME=VALUE`, or there is no such setting, or others hang on it, or it
@@ -103,8 +104,10 @@ impl TrainConfig {
         if let Some(kept) = all.pointer(&pointer) {
             set_value::check_keys(&name, &value, kept)?;
         }
-        if name == "learning.rate" {
-            config.learning.final_rate = None;
+        match name.as_str() {
+            "learning.rate" => config.learning.final_rate = None,
+            "sampling.lanes" => config.set_lanes(config.sampling.lanes),
+            _ => {}
         }
         Ok(config)
     }
@@ -114,9 +117,10 @@ impl TrainConfig {
     /// # Errors
     /// As [`TrainConfig::with`]; the message names the setting.
     pub fn with_all(&self, settings: &[String]) -> Result<TrainConfig, LearnError> {
-        // The learning rate first: it makes the rate constant, and its end may be among the others.
+        // First those that decide others too: these may be among the rest.
         let (first, then): (Vec<&String>, Vec<&String>) = settings.iter().partition(|setting| {
-            setting.starts_with("learning.rate=") || setting.starts_with("learning/rate=")
+            let name = setting.split('=').next().unwrap_or_default().replace('/', ".");
+            ["learning.rate", "sampling.lanes"].contains(&name.as_str())
         });
         first.into_iter().chain(then).try_fold(self.clone(), |config, setting| {
             config

@@ -19,7 +19,7 @@ use crate::networks::{Actor, ImageShape, ModelShape, Published};
 use crate::random::{Purpose, Stream};
 use crate::runs::agent_file::AgentFile;
 use crate::runs::checkpoint::{Loaded, Store};
-use crate::runs::run_directory::{damaged_selection, go_on, read_config};
+use crate::runs::run_directory::{GONE, damaged_selection, go_on, read_config};
 use crate::sampling::privileged::Privileged;
 use crate::sampling::shaping::{Shaping, seen};
 
@@ -165,7 +165,8 @@ impl TrainedPolicy {
                 format!("{}: the checkpoint that it selected is gone", directory.display())
             });
             let instead = if selected.is_some() { "the best candidate" } else { "the latest" };
-            if let Some(problem) = damaged_selection(directory).or(missing) {
+            let any = selected.is_some() || matches!(store.newest(&mut |_| {}), Ok(Some(_)));
+            if let Some(problem) = damaged_selection(directory).or(missing).filter(|_| any) {
                 warn(format!("{problem}; {instead} is played"));
             }
         }
@@ -175,10 +176,7 @@ impl TrainedPolicy {
         };
         let loaded = loaded.ok_or_else(|| {
             if store.has_judged() {
-                return LearnError::content(
-                    directory,
-                    "its checkpoints are gone; bring its folder checkpoints back",
-                );
+                return LearnError::content(directory, GONE);
             }
             let command = go_on(&config, directory);
             LearnError::content(
@@ -226,6 +224,14 @@ impl TrainedPolicy {
         check_fits: impl FnOnce(&ModelShape) -> Result<(), LearnError>,
         restore: impl FnOnce(&mut Learner) -> Result<(), LearnError>,
     ) -> Result<TrainedPolicy, LearnError> {
+        if let Some(own) = config.env.action_space()?.map(|space| ActionShape::from(&space))
+            && own != action
+        {
+            return Err(LearnError::Config(format!(
+                "an agent of {} cannot act here: its buttons are others; play it in its own environment",
+                config.env.id
+            )));
+        }
         let mut config = config.clone();
         config.learning.threads = 1;
         let image = ImageShape { height, width, channels };

@@ -20,7 +20,7 @@ use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::networks::ModelShape;
 use crate::runs::checkpoint::{Loaded, Store, parameter_names};
-use crate::runs::run_directory::{go_on, read_config, read_selection};
+use crate::runs::run_directory::{GONE, go_on, read_config, read_selection};
 use crate::runs::selection::Candidate;
 use crate::runs::zoo;
 use crate::sampling::auxiliary::Auxiliary;
@@ -123,7 +123,11 @@ fn unround(bytes: &[u8], scales: &[f32], count: usize) -> Option<Vec<f32>> {
 /// The file of the agent that a run selects.
 pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
     let config = read_config(run)?;
-    let best = Store::new(run, 1).selected().ok_or_else(|| {
+    let store = Store::new(run, 1);
+    let best = store.selected().ok_or_else(|| {
+        if store.has_judged() {
+            return LearnError::content(run, GONE);
+        }
         let command = format!("{} --eval-every {}", go_on(&config, run), config.frames);
         LearnError::content(
             run,

@@ -27,6 +27,9 @@ const EPISODES: [&str; 2] = ["closing_episodes.jsonl", "last_policy_episodes.jso
 /// What the selected checkpoint's critics of the costs expected, and what came.
 const CALIBRATION: &str = "calibration.json";
 
+/// What is said of a run that has judged checkpoints and none any more.
+pub(crate) const GONE: &str = "its checkpoints are gone; bring its folder checkpoints back";
+
 /// A run's directory, locked against a second trainer for as long as this value lives.
 pub struct RunDirectory {
     path: PathBuf,

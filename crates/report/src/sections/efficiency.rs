@@ -1,7 +1,7 @@
 //! How fast runs learned, beside the paper's figures.
 
 use super::setting;
-use crate::document::{Block, Cell, Section, Table, frames};
+use crate::document::{Block, Cell, Section, Table, count, frames};
 use crate::group::{Group, scenario_name};
 use crate::published::published_figure;
 use crate::run::Run;
@@ -32,7 +32,8 @@ pub(super) fn section(groups: &[Group]) -> Section {
                 .filter_map(|run| run.total("wall_s"))
                 .map(|s| s / 3600.0)
                 .collect();
-            let machine = threads.first().map_or_else(|| "-".into(), |n| format!("{n:.0} threads"));
+            let machine =
+                threads.first().map_or_else(|| "-".into(), |n| count(*n as usize, "thread"));
             vec![
                 Cell::text(scenario_name(&config.scenario)),
                 Cell::number(f64::from(config.level)).with_text(config.level.to_string()),

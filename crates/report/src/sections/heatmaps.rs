@@ -1,7 +1,7 @@
 //! Where agents have been, laid over the automap.
 
 use super::setting;
-use crate::document::{Block, Image, Section, frames, slug};
+use crate::document::{Block, Image, Section, count, frames, slug};
 use crate::group::{Group, scenario_name};
 use crate::heat::{densest, overlay, shown_size, with_colour_bar};
 use crate::run::{HeatmapData, Run, Warning};
@@ -173,7 +173,7 @@ impl Automaps {
 
 fn last_counted(run: &Run) -> String {
     run.heatmaps.last().map_or_else(String::new, |map| {
-        format!("The last picture counts {} episodes.", map.episodes)
+        format!("The last picture counts {}.", count(map.episodes as usize, "episode"))
     })
 }
 

@@ -107,7 +107,8 @@ impl Plan {
 
     /// The plan in one line.
     pub fn line(&self) -> String {
-        let mut text = format!("{} runs, {} frames", self.runs, short(self.frames));
+        let runs = if self.runs == 1 { "run" } else { "runs" };
+        let mut text = format!("{} {runs}, {} frames", self.runs, short(self.frames));
         if self.finished > 0 || self.left < self.frames {
             text += &format!("; {} finished, {} frames to go", self.finished, short(self.left));
         }

@@ -1,5 +1,6 @@
 //! What shorter runs need so that they make sense: multipliers that move as far in fewer updates.
 
+use super::plan::two_digits;
 use crate::args::{Cli, Command};
 use crate::commands::train_settings::{configuration, with_rules};
 use crate::failure::Failure;
@@ -39,11 +40,12 @@ pub fn rescale(job: &mut Job, config: &TrainConfig, scale: f64) -> Result<(), Fa
         let least = scale * first_episodes as f64 / job.frames as f64;
         return Err(Failure::bad(format!(
             "--scale {scale}: the runs of {} would end after {} frames, before the first episodes of their {} worlds ({first_episodes} \
-             frames); give --scale {:.2} or more",
+             frames); give --scale {} or more",
             config.algorithm,
             job.frames,
             config.sampling.lanes,
-            (least * 100.0).ceil().max(1.0) / 100.0
+            // Two digits, upward.
+            two_digits(least * 1.05)
         )));
     }
     if factor >= 0.999 || !config.algorithm.has_multipliers() {
