@@ -91,7 +91,15 @@ def test_environments_of_agents_take_both_names(run: hasard_rs.Run) -> None:
     agent = hasard_rs.Agent.load(run.directory)
     assert agent.make(size=[72, 48], hard=True).observation_space.shape == (48, 72, 3)
     assert agent.make_vec(2, resolution="72x48").single_observation_space.shape == (48, 72, 3)
-    assert agent.make().unwrapped.safety_budget == agent.config["constraints"][0]["budget"]
+    env = agent.make()
+    assert env.safety_budget == env.unwrapped.safety_budget == agent.config["constraints"][0]["budget"]
+    assert env.cost_terms == env.unwrapped.cost_terms
+
+
+def test_a_report_takes_one_folder_or_several(run: hasard_rs.Run, tmp_path: Path) -> None:
+    """A text was taken letter by letter, and a path not at all."""
+    for runs in (run.directory, str(run.directory), [run.directory]):
+        assert (hasard_rs.report(runs, tmp_path / "page") / "index.html").is_file()
 
 
 @pytest.mark.parametrize(
