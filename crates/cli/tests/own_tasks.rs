@@ -54,10 +54,14 @@ fn a_run_keeps_its_task_and_says_when_the_file_has_changed() {
     let (first, quiet) = folder.both("eval run --episodes 2 --json");
     assert!(!quiet.contains("has changed"), "{quiet}");
     folder.ok("export-agent run -o garden.agent");
+    folder.ok("record run -o garden.episode");
+    assert!(!folder.both("replay garden.episode").1.contains("has changed"));
     // Another task under the same name: the run goes on as it was.
     folder.replace("garden.toml", "reward = 1.0", "reward = 7.0");
     let (second, said) = folder.both("eval run --episodes 2 --json");
     assert!(said.contains("garden.toml: has changed since the run began"), "{said}");
+    let (_, said) = folder.both("replay garden.episode");
+    assert!(said.contains("garden.toml: has changed since the episode was recorded"), "{said}");
     let rows = |text: &str| {
         text.lines().filter(|line| !line.contains("summary")).map(str::to_owned).collect::<Vec<_>>()
     };

@@ -8,7 +8,7 @@ use crate::places;
 use crate::settings;
 use crate::ticker::Ticker;
 use crate::zoo;
-use hasard_envs::{Env, EnvError, EnvId, EnvOptions, FrameSize, edit_distance};
+use hasard_envs::{Env, EnvError, EnvId, EnvOptions, FrameSize, edit_distance, own};
 use hasard_media::episode::EpisodeFile;
 use hasard_media::shell::quote;
 use hasard_play::{Film, Recorder, Replay, Stage, Views};
@@ -219,7 +219,12 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
 
 fn open(file: &Path, looks: &EnvOptions) -> Result<Replay, Failure> {
     let episode = EpisodeFile::read(file).map_err(Failure::bad)?;
-    Replay::new(episode, file, looks).map_err(Failure::bad)
+    let replay = Replay::new(episode, file, looks).map_err(Failure::bad)?;
+    let scenario = replay.stage().env().id().scenario;
+    if let Some(changed) = own::changed(scenario, "the episode was recorded", "episode") {
+        note!("hasard: {changed}");
+    }
+    Ok(replay)
 }
 
 fn begin(stage: &Stage, out: &Path, size: FrameSize, args: &FilmArgs) -> Result<Film, Failure> {

@@ -33,6 +33,6 @@ mod walkers;
 
 pub use mistakes::Mistake;
 pub use open::open;
-pub use place::{LARGEST_TEXT, fingerprint, is_file, read_text};
+pub use place::{LARGEST_TEXT, changed, fingerprint, is_file, read_text};
 pub use task::{Checked, check, recall, register};
 pub use template::template;

@@ -1,7 +1,7 @@
 //! Files of scenarios where ids stand: `my_task.toml`, or `my_task.toml#2` for its second level.
 
 use super::map_file;
-use crate::EnvError;
+use crate::{EnvError, Scenario};
 use std::io::Read;
 use std::path::Path;
 
@@ -51,6 +51,18 @@ pub fn read_text(path: &Path) -> Result<String, EnvError> {
 #[must_use]
 pub fn fingerprint(text: &str) -> String {
     format!("{:016x}", hash(text))
+}
+
+/// What to say if the file of a scenario is another by now than what a `keeper` of its text, such as
+/// a run, kept when it `began`; `None` if it is the same, or gone, or there is none.
+#[must_use]
+pub fn changed(scenario: Scenario, began: &str, keeper: &str) -> Option<String> {
+    let file = scenario.file?;
+    let now = read_text(Path::new(file.path)).ok()?;
+    (now != file.text).then(|| {
+        let (path, was, is) = (file.path, file.hash, fingerprint(&now));
+        format!("{path}: has changed since {began} ({was}, now {is}); the text that the {keeper} keeps is played")
+    })
 }
 
 /// FNV-1a, 64 bits.

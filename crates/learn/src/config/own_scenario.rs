@@ -62,11 +62,6 @@ impl OwnScenario {
     /// What to tell if the file at its place is another by now; `None` if it is the same or gone.
     #[must_use]
     pub fn changed(self) -> Option<String> {
-        let file = self.0.file?;
-        let now = own::read_text(std::path::Path::new(file.path)).ok()?;
-        (now != file.text).then(|| {
-            let (was, is) = (file.hash, own::fingerprint(&now));
-            format!("{}: has changed since the run began ({was}, now {is}); the text that the run keeps is played", file.path)
-        })
+        own::changed(self.0, "the run began", "run")
     }
 }
