@@ -68,6 +68,7 @@ fn a_run_keeps_its_task_and_says_when_the_file_has_changed() {
     assert_eq!(rows(&first), rows(&second));
     std::fs::remove_file(folder.0.join("garden.toml")).unwrap();
     folder.ok("eval run --episodes 1");
+    folder.ok("train garden --resume --out run --frames 1024");
     folder.ok("eval garden.agent --episodes 1");
     folder.ok("report run -o report");
     // The agent in a task that is named.

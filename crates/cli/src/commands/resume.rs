@@ -97,6 +97,7 @@ pub fn settings(
     if !given("frames") {
         args.frames = Some(saved.frames);
     }
+    args.env.clone_from(&saved.env.id);
     if !given("device") {
         args.device.clone_from(&saved.device);
     }

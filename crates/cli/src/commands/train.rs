@@ -47,8 +47,11 @@ pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
     let (start, config) = if args.resume && directory.join("config.json").exists() {
         let config = read_config(&directory).map_err(Failure::bad)?;
         // A curriculum is of a scenario; the level that the command names does not matter.
-        let same =
-            |id: &str| if config.curriculum.is_empty() { id.to_string() } else { scenario_of(id) };
+        let same = |id: &str| {
+            let id = if config.curriculum.is_empty() { id.to_string() } else { scenario_of(id) };
+            // The run's own task need not be at its place any more for its name to be known.
+            id.trim_end_matches("-v0").to_ascii_lowercase()
+        };
         if same(&config.env.id) != same(&args.env) {
             let problem = format!(
                 "{}: the run there is of {}; name that, or another --out",

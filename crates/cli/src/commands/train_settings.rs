@@ -91,6 +91,8 @@ fn constraint(text: &str) -> Result<Constraint, Failure> {
         Failure::bad(format!("--safety-budget '{text}': write a number, or TERM=NUMBER"))
     })?;
     check_number(&format!("--safety-budget '{text}'"), budget).map_err(Failure::bad)?;
+    // A task's name, as short as elsewhere.
+    let term = term.map(|term| crate::number::env_id(&term).unwrap_or(term));
     Ok(Constraint { term, budget })
 }
 
@@ -98,7 +100,7 @@ fn constraint(text: &str) -> Result<Constraint, Failure> {
 pub(super) mod tests {
     use super::*;
     use crate::args::{Cli, Command};
-    use clap::{CommandFactory, FromArgMatches};
+    use clap::{CommandFactory, FromArgMatches, Parser};
     use hasard_learn::config::{AlgorithmKind, ConstraintStatistic};
 
     /// What the options of a line come to.
@@ -191,6 +193,21 @@ pub(super) mod tests {
             let message = format!("{:?}", config(line).unwrap_err());
             assert!(message.contains(cost), "{message}");
         }
+    }
+
+    #[test]
+    fn a_budget_of_a_task_is_named_as_the_task_is() {
+        let two = "RemedyRushLevel1-v0,VolcanicVentureLevel1-v0";
+        let line = format!(
+            "hasard train {two} --safety-budget remedyrushlevel1=3 --safety-budget VolcanicVentureLevel1-v0=40"
+        );
+        let Command::Train(args) = Cli::try_parse_from(line.split_whitespace()).unwrap().command
+        else {
+            panic!("not a training")
+        };
+        let constraints = configuration(&args).unwrap().constraints;
+        let terms: Vec<_> = constraints.iter().filter_map(|one| one.term.as_deref()).collect();
+        assert_eq!(terms, two.split(',').collect::<Vec<_>>());
     }
 
     #[test]
