@@ -110,8 +110,9 @@ fn a_run_says_first_what_it_is_worth() {
     browser.wait("[...document.querySelectorAll('.told')].every((told) => /^at \\d/.test(told.innerText)) && new Set([...document.querySelectorAll('.told')].map((told) => told.firstChild.textContent)).size == 1");
     browser.wait("document.querySelectorAll('svg.chart path.pointer').length >= document.querySelectorAll('svg.chart').length");
     // What differs from the preset stands first: how often it was evaluated, on how many episodes
-    // it was confirmed, and the aim and reference budget that the preset had when it was trained.
-    browser.wait("document.querySelector('#settings table').innerText.includes('evaluation.every') && document.querySelectorAll('#settings > .scroll tbody tr').length == 4");
+    // it was confirmed, and the aim, minibatches and reference budget that the preset had when it
+    // was trained.
+    browser.wait("document.querySelector('#settings table').innerText.includes('evaluation.every') && document.querySelectorAll('#settings > .scroll tbody tr').length == 5");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 

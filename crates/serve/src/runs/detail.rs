@@ -71,7 +71,10 @@ fn beside_preset(config: &Value) -> Value {
     let Ok(own) = serde_json::from_value::<TrainConfig>(config.clone()) else {
         return as_it_is(config);
     };
-    let usual = TrainConfig::new(own.algorithm, own.preset, EnvConfig::new(&own.env.id)).ok();
+    let mut usual = TrainConfig::new(own.algorithm, own.preset, EnvConfig::new(&own.env.id)).ok();
+    if let Some(usual) = &mut usual {
+        usual.set_frames(own.frames);
+    }
     let value = |config: &TrainConfig| serde_json::to_value(config).unwrap_or(Value::Null);
     let (own, usual) = (value(&own), usual.as_ref().map(value));
     let rows = explained().into_iter().filter_map(|one| {
