@@ -20,7 +20,7 @@ pub struct EpisodeLines {
 
 /// What an episode was played under, as far as another episode's return is not comparable.
 #[derive(Clone, Copy)]
-struct Under {
+pub struct Under {
     rules: RuleSet,
     hard: bool,
     full_actions: bool,
@@ -28,13 +28,14 @@ struct Under {
 }
 
 impl Under {
-    fn of(options: &EnvOptions) -> Under {
+    /// Of the worlds of these options.
+    pub fn of(options: &EnvOptions) -> Under {
         let EnvOptions { rules, hard, full_actions, frame_skip, .. } = *options;
         Under { rules, hard, full_actions, frame_skip }
     }
 
     /// Adds it to an episode's row: rule set and constraint always, the rest where it is not usual.
-    fn say(self, row: &mut Value) {
+    pub fn say(self, row: &mut Value) {
         row["rules"] = json!(self.rules.name());
         row["hard"] = json!(self.hard);
         if self.full_actions {
@@ -44,11 +45,6 @@ impl Under {
             row["frame_skip"] = json!(self.frame_skip);
         }
     }
-}
-
-/// Adds to an episode's row what it was played under.
-pub fn say_rules(row: &mut Value, options: &EnvOptions) {
-    Under::of(options).say(row);
 }
 
 impl EpisodeLines {
@@ -62,8 +58,7 @@ impl EpisodeLines {
         self.constraints = constraints.to_vec();
     }
 
-    /// The rule set, and whether under the hard constraint: files of episodes say it, so that a
-    /// report compares like with like.
+    /// What episodes are played under: their files say it, so that a report compares like with like.
     pub fn played_under(&mut self, options: &EnvOptions) {
         self.under = Some(Under::of(options));
     }

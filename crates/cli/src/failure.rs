@@ -140,7 +140,7 @@ fn elsewhere(flag: &str) -> Option<String> {
         return Some(format!("{flag} is of `hasard train`, not of this command"));
     }
     let setting = hasard_learn::config::explained::named(&name.replace('-', "_"))?;
-    Some(match crate::commands::flag_of(&setting).filter(|flag| of_train(flag)) {
+    Some(match crate::commands::flag_of(&setting) {
         Some(own) => format!("there is no {flag}; of a training that is --{own}"),
         None => format!("there is no {flag}; of a training that is --set {setting}=VALUE"),
     })

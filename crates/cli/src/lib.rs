@@ -168,7 +168,7 @@ pub fn evaluate(
             play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))?
         {
             let mut row = episode_row(&config.env.id, all.len() as u64, &episode);
-            episode_lines::say_rules(&mut row, options);
+            episode_lines::Under::of(options).say(&mut row);
             rows.push(row);
             all.push(episode);
         }

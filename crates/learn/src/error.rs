@@ -44,8 +44,8 @@ impl LearnError {
     /// Weights that a run cannot begin with; `whose` names what has them, a run or an agent.
     pub(crate) fn no_beginning(whose: &str) -> LearnError {
         LearnError::Config(format!(
-            "the {whose} to begin with does not fit: it has other layers, critics, actions or pictures than this run; give this \
-             run those of its settings, or name another with --init-from"
+            "the {whose} to begin with does not fit: it has other layers, critics, actions or pictures than this run; train with \
+             its settings, or name another with --init-from"
         ))
     }
 

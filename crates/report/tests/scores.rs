@@ -2,6 +2,7 @@
 
 mod synthetic;
 
+use hasard_media::episode::{EpisodeFile, Header, Outcome};
 use hasard_report::write_report;
 use synthetic::{Folder, Synthetic};
 
@@ -39,10 +40,28 @@ fn a_seed_scores_by_its_last_policy_whatever_it_sees() {
             )
         })
         .collect();
-    // Of another action space, and of actions that are held longer: no chance of these agents'.
+    // Of another action space, and of actions that are held longer: not what chance returns to these agents.
     for (word, name) in [("\"full_actions\":true", "full"), ("\"frame_skip\":8", "skip8")] {
         let other = episodes.replace("\"return\":", &format!("{word},\"return\":100"));
         std::fs::write(runs.join(format!("random-{name}.jsonl")), other).unwrap();
+    }
+    for (option, value) in [("full-actions", "true"), ("frame-skip", "8")] {
+        let options = [("rules", "tables"), (option, value)];
+        let header = Header {
+            env: "RemedyRushLevel1-v0".into(),
+            options: options.map(|(name, value)| (name.to_owned(), value.to_owned())).into(),
+            seed: 1,
+            program: "0.1.0".into(),
+            player: "random".into(),
+            steps: 0,
+            groups: 1,
+            deltas: 0,
+            outcome: None,
+        };
+        let mut file = EpisodeFile::new(header).unwrap();
+        file.push(&[1], &[]).unwrap();
+        file.set_outcome(Outcome { episode_return: 1000.0, ..Outcome::default() });
+        file.write(&runs.join(format!("{option}.episode"))).unwrap();
     }
     std::fs::write(runs.join("random-RemedyRushLevel1-v0-tables.jsonl"), episodes).unwrap();
     let out = folder.0.join("out");

@@ -28,13 +28,12 @@
 
 use crate::grid::{Grid, Sweep};
 use crate::one_line;
-use crate::option::OptionValue;
 use crate::paper;
-use crate::table::{GRID_KEYS, algorithms, change, levels, option_value, scenarios};
+use crate::table::{GRID_KEYS, algorithms, change, levels, scenarios};
 use std::path::PathBuf;
 use toml::{Table, Value};
 
-const TOP_KEYS: [&str; 6] = ["experiment", "out", "parallel", "evaluate", "settings", "grid"];
+const TOP_KEYS: [&str; 5] = ["experiment", "out", "parallel", "evaluate", "grid"];
 
 impl Sweep {
     /// Understands the text of a sweep file.
@@ -73,13 +72,7 @@ fn understand(text: &str) -> Result<Sweep, String> {
     let mut sweep = match table.get("experiment") {
         None => {
             let grid = Grid { levels: vec![1], seeds: vec![1], ..Grid::default() };
-            Sweep {
-                out: PathBuf::from("runs"),
-                parallel: 1,
-                evaluate: 0,
-                settings: Vec::new(),
-                grids: vec![grid],
-            }
+            Sweep { out: PathBuf::from("runs"), parallel: 1, evaluate: 0, grids: vec![grid] }
         }
         Some(name) => {
             paper::experiment(name.as_str().ok_or("`experiment` must be a name in quotes")?)?
@@ -100,10 +93,6 @@ fn understand(text: &str) -> Result<Sweep, String> {
     if let Some(evaluate) = table.get("evaluate") {
         let count = evaluate.as_integer().and_then(|count| u32::try_from(count).ok());
         sweep.evaluate = count.ok_or("`evaluate` must be a whole number of episodes from 0")?;
-    }
-    if let Some(settings) = table.get("settings") {
-        let settings = settings.as_table().ok_or("`settings` must be a table")?;
-        named_settings("", settings, &mut sweep.settings)?;
     }
     let mut rest = table.clone();
     if table.contains_key("experiment") {
@@ -127,76 +116,20 @@ fn understand(text: &str) -> Result<Sweep, String> {
         for (index, table) in grids.iter().enumerate() {
             let named = |problem: String| format!("grid {}: {problem}", index + 1);
             let table = table.as_table().ok_or("`grid` must be written as [[grid]]")?;
-            let known = |key: &str| key == "settings" || GRID_KEYS.contains(&key);
-            if let Some(key) = table.keys().find(|key| !known(key)) {
+            if let Some(key) = table.keys().find(|key| !GRID_KEYS.contains(&key.as_str())) {
                 return Err(named(format!(
-                    "unknown key `{key}`; known are settings, {}",
+                    "unknown key `{key}`; known are {}",
                     GRID_KEYS.join(", ")
                 )));
             }
             for base in &bases {
                 let mut grid = base.clone();
                 change(&mut grid, table).map_err(named)?;
-                if let Some(settings) = table.get("settings") {
-                    let settings = settings
-                        .as_table()
-                        .ok_or_else(|| named("`settings` must be a table".into()))?;
-                    named_settings("", settings, &mut grid.settings).map_err(named)?;
-                }
                 sweep.grids.push(grid);
             }
         }
     }
     Ok(sweep)
-}
-
-/// Settings by their names in config.json, as `--set` takes them.
-fn named_settings(
-    within: &str,
-    table: &Table,
-    found: &mut Vec<(String, String)>,
-) -> Result<(), String> {
-    for (key, value) in table {
-        let name = if within.is_empty() { key.clone() } else { format!("{within}.{key}") };
-        if let Value::Table(table) = value {
-            named_settings(&name, table, found)?;
-        } else {
-            // The sweep sets these itself, a run each.
-            let own = [
-                ("seed", "seeds"),
-                ("frames", "frames"),
-                ("algorithm", "algorithms"),
-                ("preset", "preset under [options]"),
-            ];
-            if let Some((_, key)) = own.iter().find(|(setting, _)| *setting == name) {
-                return Err(format!("`settings.{name}` would be the same for all runs; use {key}"));
-            }
-            let text = setting_value(value).ok_or_else(|| {
-                format!("`settings.{name}` must be a text, a number, true, false or a list of them")
-            })?;
-            found.push((name, text));
-        }
-    }
-    Ok(())
-}
-
-fn setting_value(value: &Value) -> Option<String> {
-    match value {
-        Value::Array(items) => {
-            let items: Option<Vec<String>> = items
-                .iter()
-                .map(|item| match item {
-                    Value::String(text) => Some(format!("{text:?}")),
-                    other => setting_value(other),
-                })
-                .collect();
-            Some(format!("[{}]", items?.join(",")))
-        }
-        one => Some(match option_value(one)? {
-            OptionValue::Text(text) => text,
-            OptionValue::Switch(on) => on.to_string(),
-        }),
-    }
 }
 
 fn line_and_column(text: &str, at: usize) -> (usize, usize) {

@@ -31,7 +31,8 @@ pub struct Grid {
     /// Options of `hasard train` without dashes, and their values: more than one value is a further
     /// axis.
     pub options: Vec<(String, Vec<OptionValue>)>,
-    /// Settings of `config.json` and their values, over those of the sweep.
+    /// Settings of `config.json` and their values, the later over the earlier; the folders of runs
+    /// do not say them.
     pub settings: Vec<(String, String)>,
 }
 
@@ -45,9 +46,6 @@ pub struct Sweep {
     /// Episodes that the agent of each finished run is evaluated on, kept in its directory as
     /// `eval.jsonl`; 0 for none.
     pub evaluate: u32,
-    /// Settings of `config.json` and their values, for every run; the folders of runs do not say
-    /// them.
-    pub settings: Vec<(String, String)>,
     /// The grids; a run that several ask for is made once.
     pub grids: Vec<Grid>,
 }
@@ -90,7 +88,7 @@ impl Sweep {
                                 &options,
                             );
                             job.evaluate = self.evaluate;
-                            for (name, value) in self.settings.iter().chain(&grid.settings) {
+                            for (name, value) in &grid.settings {
                                 job.add_option("set", &format!("{name}={value}"));
                             }
                             let made = (job.frames, job.arguments.clone());

@@ -135,10 +135,16 @@ impl Job {
         self.arguments.extend([format!("--{name}"), value.to_owned()].map(OsString::from));
     }
 
+    /// Whether nothing is there yet.
+    #[must_use]
+    pub fn is_new(&self) -> bool {
+        !self.directory.join("config.json").is_file()
+    }
+
     /// How far the run is, by its `config.json` and the last whole line of its `metrics.jsonl`.
     #[must_use]
     pub fn state(&self) -> State {
-        if !self.directory.join("config.json").is_file() {
+        if self.is_new() {
             return State::New;
         }
         let text = std::fs::read(self.directory.join("metrics.jsonl")).unwrap_or_default();

@@ -171,6 +171,6 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
     };
     let grids = tables.iter().map(grid).collect::<Result<Vec<Grid>, String>>()?;
     let evaluate = if name.starts_with("quick") || name == "behaviour" { 100 } else { 0 };
-    let (out, settings) = (PathBuf::from("runs"), Vec::new());
-    Ok(Sweep { out, parallel: 1, evaluate, settings, grids })
+    let out = PathBuf::from("runs");
+    Ok(Sweep { out, parallel: 1, evaluate, grids })
 }

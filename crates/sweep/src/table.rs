@@ -5,8 +5,8 @@ use crate::option::OptionValue;
 use toml::{Table, Value};
 
 /// The keys of a grid.
-pub(crate) const GRID_KEYS: [&str; 6] =
-    ["frames", "seeds", "scenarios", "levels", "algorithms", "options"];
+pub(crate) const GRID_KEYS: [&str; 7] =
+    ["frames", "seeds", "scenarios", "levels", "algorithms", "options", "settings"];
 
 /// Puts what a table says into a grid.
 pub(crate) fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
@@ -44,7 +44,60 @@ pub(crate) fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
             }
         }
     }
+    if let Some(settings) = table.get("settings") {
+        let settings = settings.as_table().ok_or("`settings` must be a table")?;
+        named_settings("", settings, &mut grid.settings)?;
+    }
     Ok(())
+}
+
+/// Settings by their names in config.json, as `--set` takes them.
+fn named_settings(
+    within: &str,
+    table: &Table,
+    found: &mut Vec<(String, String)>,
+) -> Result<(), String> {
+    for (key, value) in table {
+        let name = if within.is_empty() { key.clone() } else { format!("{within}.{key}") };
+        if let Value::Table(table) = value {
+            named_settings(&name, table, found)?;
+        } else {
+            // The sweep sets these itself, a run each.
+            let own = [
+                ("seed", "seeds"),
+                ("frames", "frames"),
+                ("algorithm", "algorithms"),
+                ("preset", "preset under [options]"),
+            ];
+            if let Some((_, key)) = own.iter().find(|(setting, _)| *setting == name) {
+                return Err(format!("`settings.{name}` would be the same for all runs; use {key}"));
+            }
+            let text = setting_value(value).ok_or_else(|| {
+                format!("`settings.{name}` must be a text, a number, true, false or a list of them")
+            })?;
+            found.push((name, text));
+        }
+    }
+    Ok(())
+}
+
+fn setting_value(value: &Value) -> Option<String> {
+    match value {
+        Value::Array(items) => {
+            let items: Option<Vec<String>> = items
+                .iter()
+                .map(|item| match item {
+                    Value::String(text) => Some(format!("{text:?}")),
+                    other => setting_value(other),
+                })
+                .collect();
+            Some(format!("[{}]", items?.join(",")))
+        }
+        one => Some(match option_value(one)? {
+            OptionValue::Text(text) => text,
+            OptionValue::Switch(on) => on.to_string(),
+        }),
+    }
 }
 
 pub(crate) fn scenarios(value: &Value) -> Result<Vec<String>, String> {

@@ -163,16 +163,9 @@ fn show(value: Option<&Value>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::{Cli, Command};
-    use clap::{CommandFactory, FromArgMatches};
-
-    fn train(line: &str) -> (TrainArgs, ArgMatches) {
-        let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
-        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
-            panic!("not a training")
-        };
-        (args, matches.subcommand_matches("train").unwrap().clone())
-    }
+    use crate::args::Cli;
+    use crate::commands::train_settings::tests::train;
+    use clap::CommandFactory;
 
     #[test]
     fn flags_that_contradict_the_run_change_it_or_are_refused() {

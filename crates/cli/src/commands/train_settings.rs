@@ -100,17 +100,22 @@ fn constraint(text: &str) -> Result<Constraint, Failure> {
 pub(super) mod tests {
     use super::*;
     use crate::args::{Cli, Command};
-    use clap::{CommandFactory, FromArgMatches, Parser};
+    use clap::{CommandFactory, FromArgMatches};
     use hasard_learn::config::{AlgorithmKind, ConstraintStatistic};
 
-    /// What the options of a line come to.
-    pub(in crate::commands) fn config(line: &str) -> Result<TrainConfig, Failure> {
-        let line = format!("hasard train ArmamentBurdenLevel1-v0 {line}");
+    /// The options of a line, and which of them were typed.
+    pub(in crate::commands) fn train(line: &str) -> (TrainArgs, ArgMatches) {
         let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
         let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
             panic!("not a training")
         };
-        configuration(&with_rules(&args, matches.subcommand_matches("train").unwrap()))
+        (args, matches.subcommand_matches("train").unwrap().clone())
+    }
+
+    /// What the options of a line come to.
+    pub(in crate::commands) fn config(line: &str) -> Result<TrainConfig, Failure> {
+        let (args, typed) = train(&format!("hasard train ArmamentBurdenLevel1-v0 {line}"));
+        configuration(&with_rules(&args, &typed))
     }
 
     /// A2: the paper's best algorithm within minutes is what a command without options trains; 500
@@ -141,7 +146,7 @@ pub(super) mod tests {
         }
     }
 
-    /// JSON has no NaN: the null in its place was laid to `--set`.
+    /// JSON has no NaN: `--set` was blamed for the null in its place.
     #[test]
     fn what_is_no_number_is_refused_by_the_option_that_gave_it() {
         for (option, name) in [
@@ -163,14 +168,7 @@ pub(super) mod tests {
     #[test]
     fn a_curriculum_is_as_long_as_frames_say() {
         let check = |line: &str| {
-            let matches = Cli::command()
-                .try_get_matches_from(
-                    format!("hasard train RemedyRushLevel1 {line}").split_whitespace(),
-                )
-                .unwrap();
-            let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
-                panic!("not a training")
-            };
+            let (args, _) = train(&format!("hasard train RemedyRushLevel1 {line}"));
             check_length(&args, &configuration(&args).unwrap())
         };
         let message = format!("{:?}", check("--curriculum 1:64,2:64 --frames 100").unwrap_err());
@@ -201,10 +199,7 @@ pub(super) mod tests {
         let line = format!(
             "hasard train {two} --safety-budget remedyrushlevel1=3 --safety-budget VolcanicVentureLevel1-v0=40"
         );
-        let Command::Train(args) = Cli::try_parse_from(line.split_whitespace()).unwrap().command
-        else {
-            panic!("not a training")
-        };
+        let (args, _) = train(&line);
         let constraints = configuration(&args).unwrap().constraints;
         let terms: Vec<_> = constraints.iter().filter_map(|one| one.term.as_deref()).collect();
         assert_eq!(terms, two.split(',').collect::<Vec<_>>());

@@ -14,29 +14,24 @@ pub fn run(args: &VerifyArgs) -> Outcome {
     let paths = if args.claim.is_dir() { claims(&args.claim)? } else { vec![args.claim.clone()] };
     let threads = args.threads.map_or_else(cores, usize::from);
     for path in &paths {
-        let claim = match Claim::read(path) {
-            Ok(claim) => claim,
-            Err(error) if args.claim.is_dir() => {
-                refused += 1;
-                say_verdict(args.json, path, &[error.to_string()])?;
-                continue;
-            }
-            Err(error) => return Err(Failure::bad(error)),
-        };
         let folder =
             path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let verdict = match claim.check(folder, threads) {
-            Ok(verdict) => verdict,
+        let checked = Claim::read(path)
+            .and_then(|claim| claim.check(folder, threads).map(|verdict| (claim, verdict)));
+        let (held, problems) = match checked {
+            Ok((claim, Verdict::Holds(measured))) => (Some((claim, measured)), Vec::new()),
+            Ok((_, Verdict::Refused(problems))) => (None, problems),
             // Of a folder, the others are checked all the same.
-            Err(error) if args.claim.is_dir() => Verdict::Refused(vec![error.to_string()]),
+            Err(error) if args.claim.is_dir() => (None, vec![error.to_string()]),
             Err(error) => return Err(Failure::bad(error)),
         };
-        let problems = match &verdict {
-            Verdict::Holds(_) => Vec::new(),
-            Verdict::Refused(problems) => problems.clone(),
-        };
-        refused += usize::from(!problems.is_empty());
-        if let (Verdict::Holds(measured), false) = (&verdict, args.json) {
+        refused += usize::from(held.is_none());
+        if args.json {
+            say!(
+                "{}",
+                json!({ "claim": path.display().to_string(), "holds": held.is_some(), "problems": problems })
+            );
+        } else if let Some((claim, measured)) = held {
             say!(
                 "{}: holds: return {:.3}, cost {:.3} of {}, {} episodes, rules {}",
                 path.display(),
@@ -47,22 +42,11 @@ pub fn run(args: &VerifyArgs) -> Outcome {
                 claim.rules
             );
         } else {
-            say_verdict(args.json, path, &problems)?;
+            say!("{}: does not hold: {}", path.display(), problems.join("; "));
         }
     }
     match refused {
         0 => Ok(()),
         _ => Err(Failure::Negative(format!("{refused} of {} claims do not hold", paths.len()))),
     }
-}
-
-/// Says whether a claim holds; with a reason where it does not.
-fn say_verdict(as_json: bool, path: &Path, problems: &[String]) -> Outcome {
-    if as_json {
-        let (claim, holds) = (path.display().to_string(), problems.is_empty());
-        say!("{}", json!({ "claim": claim, "holds": holds, "problems": problems }));
-    } else {
-        say!("{}: does not hold: {}", path.display(), problems.join("; "));
-    }
-    Ok(())
 }

@@ -13,7 +13,8 @@ const LAYERS: [&str; 3] = ["rules", "levels", "hard"];
 /// summary, and a budget is a scenario's.
 const SHARED: [&str; 4] = ["name", "title", "summary", "budget"];
 
-/// Notes the layers that hold in no setting, and what a layer changes of what all levels share. `levels` is the number of levels, `around` the keys of the layers around this one.
+/// Notes the layers that hold in no setting, and what a layer changes of what all levels share.
+/// `levels` is the number of levels, `around` the keys of the layers around this one.
 pub(super) fn check(
     root: &Node,
     layer: &Node,

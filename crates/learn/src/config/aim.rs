@@ -1,7 +1,7 @@
 //! What an episode may cost, as learning aims at it: a share of the budget, to which the aim may
 //! come down from what the first episodes cost.
 
-use crate::config::numbers::Shown;
+use crate::config::numbers::{Shown, refuse};
 use crate::config::{AlgorithmKind, TrainConfig};
 use crate::error::LearnError;
 
@@ -25,10 +25,7 @@ impl TrainConfig {
 
     /// Refuses an annealing of the budget that no run can have.
     pub(super) fn check_annealing(&self) -> Result<(), LearnError> {
-        let refuse = |name: &str, given: f64, allowed: &str| {
-            let given = Shown(given);
-            Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
-        };
+        let refuse = |name: &str, given, allowed: &str| refuse(name, &Shown(given), allowed);
         let learning = &self.learning;
         if let Some(factor) = learning.budget_annealing_start {
             let name = "learning.budget_annealing_start";

@@ -224,13 +224,12 @@ fn quicken(config: &mut TrainConfig) {
     config.learning.final_rate = Some(1e-4);
     config.learning.exploration_coefficient = 0.003;
     // A trust region is made for one step a rollout.
-    let passes = if config.algorithm.separates_networks() { 1 } else { 2 };
-    config.learning.epochs = passes;
-    config.learning.minibatches = if passes == 1 { 1 } else { 4 };
-    // It would spare one pass in four.
+    let (passes, minibatches, rate) =
+        if config.algorithm.separates_networks() { (1, 1, 0.01) } else { (2, 4, 0.04) };
+    (config.learning.epochs, config.learning.minibatches) = (passes, minibatches);
+    // It would spare one step in eight.
     config.learning.reuse_forward = false;
-    // Once a rollout, as much as 0.01 in each of its minibatches.
-    let rate = 0.01 * (passes * passes) as f64;
+    // Once a rollout.
     config.algorithm_settings.multiplier_rate = rate;
     // The integral alone runs in circles, which a large proportional part damps; and what a
     // multiplier lags behind a policy that grows better at earning is taken off the budget

@@ -1,6 +1,5 @@
 //! The settings of a run, all of them.
 
-use std::fmt;
 
 use hasard_engine::simd::{Family, Simd};
 use serde::{Deserialize, Serialize};
@@ -10,7 +9,7 @@ use crate::config::change::Change;
 use crate::config::constraint::find_terms;
 use crate::config::curriculum::Lesson;
 use crate::config::names::names;
-use crate::config::numbers::{Shown, check_number};
+use crate::config::numbers::{Shown, check_number, refuse};
 use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig,
     LearningConfig, NetworkConfig, Products, ReportingConfig, ReturnNormaliser, SamplingConfig,
@@ -105,9 +104,6 @@ impl TrainConfig {
 
     /// Refuses settings that no run can have, naming the setting and what it may be.
     pub fn check(&self) -> Result<(), LearnError> {
-        let refuse = |name: &str, given: &dyn fmt::Display, allowed: &str| {
-            Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
-        };
         let (sampling, learning) = (&self.sampling, &self.learning);
         if learning.products == Products::Bfloat16 && (learning.portable || self.device != "cpu") {
             let where_else = if learning.portable { "with --portable" } else { "on a card" };
@@ -237,10 +233,7 @@ impl TrainConfig {
 
     /// Refuses a value phase that no run can have.
     pub(crate) fn check_value_phase(&self) -> Result<(), LearnError> {
-        let refuse = |name: &str, given: f64, allowed: &str| {
-            let given = Shown(given);
-            Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
-        };
+        let refuse = |name: &str, given, allowed: &str| refuse(name, &Shown(given), allowed);
         let learning = &self.learning;
         let (passes, clone) = (learning.value_phase_passes, learning.value_phase_clone);
         if learning.value_phase == Some(0) {

@@ -160,16 +160,7 @@ impl TrainedPolicy {
         let config = read_config(directory)?;
         let store = Store::new(directory, 1);
         let selected = store.selected();
-        if which == Which::Selected {
-            let missing = (selected.is_none() && store.has_judged()).then(|| {
-                format!("{}: the checkpoint that it selected is gone", directory.display())
-            });
-            let instead = if selected.is_some() { "the best candidate" } else { "the latest" };
-            let any = selected.is_some() || matches!(store.newest(&mut |_| {}), Ok(Some(_)));
-            if let Some(problem) = damaged_selection(directory).or(missing).filter(|_| any) {
-                warn(format!("{problem}; {instead} is played"));
-            }
-        }
+        let has_selected = selected.is_some();
         let loaded = match (which, selected) {
             (Which::Selected, Some(selected)) => Some(Loaded::read(&selected)?),
             _ => store.newest(warn)?,
@@ -184,6 +175,15 @@ impl TrainedPolicy {
                 format!("no checkpoint was written yet; let the run go on: {command}"),
             )
         })?;
+        if which == Which::Selected {
+            let missing = (!has_selected && store.has_judged()).then(|| {
+                format!("{}: the checkpoint that it selected is gone", directory.display())
+            });
+            let instead = if has_selected { "the best candidate" } else { "the latest" };
+            if let Some(problem) = damaged_selection(directory).or(missing) {
+                warn(format!("{problem}; {instead} is played"));
+            }
+        }
         let policy = TrainedPolicy::restored(
             &config,
             observation,

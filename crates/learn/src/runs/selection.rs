@@ -12,7 +12,7 @@
 //! A checkpoint is *surely* within its budgets if the upper end of its confirmed cost is, at a
 //! level shared out over all confirmations that a run may make (Bonferroni), so that it does not get
 //! easier to earn the more candidates are tried. An interval knows the costs that its episodes had:
-//! of a cost so rare that none of them met it, no bound of a mean can speak. With 100 episodes of
+//! of a cost so rare that none of them met it, no bound of a mean says anything. With 100 episodes of
 //! which 3 % cost 200, 5 % of samples hold none of them.
 
 use hasard_envs::Episode;

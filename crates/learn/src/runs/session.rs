@@ -37,8 +37,7 @@ pub enum Beginning<'a> {
     Nothing,
     /// Everything of a checkpoint.
     Everything(Box<Loaded>),
-    /// Weights and normalisers of a checkpoint, and the order of its
-    /// buttons.
+    /// Weights and normalisers of a checkpoint, and the order of its buttons.
     Weights(Box<Loaded>, Option<Vec<usize>>),
     /// Weights and statistics of pixels of an agent's file, these its bytes, and the order of its
     /// buttons.

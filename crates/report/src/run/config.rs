@@ -66,6 +66,9 @@ const SPELLINGS: &[(&str, &[&str])] = &[
     ("frame_stack", &["env.frame_stack"]),
 ];
 
+/// Tics that an action is held where nothing is said of it.
+pub const FRAME_SKIP: u64 = 4;
+
 /// What was trained and how. Everything but the seed is the experiment's identity: runs are
 /// averaged only if all of it is equal, known key or not.
 #[derive(Clone, PartialEq, Debug)]
@@ -305,7 +308,7 @@ impl Config {
     /// Tics that each action is held.
     #[must_use]
     pub fn frame_skip(&self) -> u64 {
-        self.options.get("frame_skip").and_then(|tics| tics.parse().ok()).unwrap_or(4)
+        self.options.get("frame_skip").and_then(|tics| tics.parse().ok()).unwrap_or(FRAME_SKIP)
     }
 
     /// Whether harm ends the episode.

@@ -1,6 +1,6 @@
 //! Finding runs and recorded episodes below the folders that a user names.
 
-use super::{EpisodeResult, Run, Warning, read_episode_lines, read_text, sorted_files};
+use super::{EpisodeResult, FRAME_SKIP, Run, Warning, read_episode_lines, read_text, sorted_files};
 use hasard_media::episode::EpisodeFile;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -132,13 +132,13 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     hard: header.options.get("hard").map(|hard| hard == "true"),
                     full_actions: header
                         .options
-                        .get("full_actions")
+                        .get("full-actions")
                         .is_some_and(|full| full == "true"),
                     frame_skip: header
                         .options
-                        .get("frame_skip")
-                        .and_then(|n| n.parse().ok())
-                        .unwrap_or(4),
+                        .get("frame-skip")
+                        .and_then(|tics| tics.parse().ok())
+                        .unwrap_or(FRAME_SKIP),
                     length: Some(f64::from(header.steps)),
                     seed: None,
                 };

@@ -1,7 +1,7 @@
 //! Finished episodes, as `hasard rollout --json` and `hasard eval --json` print them and episode
 //! files keep them.
 
-use super::{Config, Constraint, Warning};
+use super::{Config, Constraint, FRAME_SKIP, Warning};
 use serde_json::Value;
 use std::collections::HashSet;
 use std::path::Path;
@@ -107,7 +107,7 @@ pub fn read_episode_lines(
                 rules: value.get("rules").and_then(Value::as_str).map(String::from),
                 hard: value.get("hard").and_then(Value::as_bool),
                 full_actions: value.get("full_actions").and_then(Value::as_bool).unwrap_or(false),
-                frame_skip: value.get("frame_skip").and_then(Value::as_u64).unwrap_or(4),
+                frame_skip: value.get("frame_skip").and_then(Value::as_u64).unwrap_or(FRAME_SKIP),
                 length: number("length"),
                 seed: value.get("seed").and_then(Value::as_u64),
             }),

@@ -139,7 +139,7 @@ mod tests {
             rules: None,
             hard: None,
             full_actions: false,
-            frame_skip: 4,
+            frame_skip: crate::run::FRAME_SKIP,
             length: Some(525.0),
             seed: None,
         };

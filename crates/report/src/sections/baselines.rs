@@ -1,7 +1,7 @@
 //! What a random policy and PPO reach here: the ends of the scale that returns are measured on.
 
 use crate::group::Group;
-use crate::run::{Config, Found, Run, scenario_and_level};
+use crate::run::{Config, FRAME_SKIP, Found, Run, scenario_and_level};
 use crate::statistics::{Estimate, feasible_scores, mean, normalised};
 
 /// Scores of experiments, relative to our own random policy and PPO.
@@ -119,21 +119,18 @@ impl<'a> Baselines<'a> {
             let rules = config.rules().unwrap_or("paper");
             if self.random(config).is_none() {
                 let env = &config.env;
-                let (mut options, mut file) = (String::new(), format!("random-{env}-{rules}"));
-                for (differs, option, word) in [
-                    (config.hard(), " --hard".to_string(), "-hard".to_string()),
-                    (config.full_actions(), " --full-actions".into(), "-full".into()),
-                    (
-                        config.frame_skip() != 4,
-                        format!(" --frame-skip {}", config.frame_skip()),
-                        format!("-skip{}", config.frame_skip()),
-                    ),
-                ] {
-                    if differs {
-                        options += &option;
-                        file += &word;
-                    }
+                let mut options = String::new();
+                if config.hard() {
+                    options += " --hard";
                 }
+                if config.full_actions() {
+                    options += " --full-actions";
+                }
+                if config.frame_skip() != FRAME_SKIP {
+                    options += &format!(" --frame-skip {}", config.frame_skip());
+                }
+                let file =
+                    format!("random-{env}-{rules}{}", options.replace(" --", "-").replace(' ', ""));
                 commands.push(format!(
                     "hasard rollout {env} --policy random --episodes 100 --rules {rules}{options} --json > runs/{file}.jsonl"
                 ));

@@ -3,7 +3,7 @@
 
 use hasard_learn::config::TrainConfig;
 use hasard_learn::runs::run_directory::read_config;
-use hasard_sweep::{Job, State};
+use hasard_sweep::Job;
 
 /// The jobs without those that repeat an earlier one. A job that has nothing yet takes the
 /// directory of an equal run of the same folder.
@@ -15,7 +15,7 @@ pub fn share(pairs: Vec<(Job, TrainConfig)>) -> Vec<(Job, TrainConfig)> {
         if learned.contains(&what) {
             continue;
         }
-        if job.state() == State::New
+        if job.is_new()
             && let Some(equal) = job.siblings().into_iter().find(|directory| {
                 read_config(directory).is_ok_and(|found| what_is_learned(&found) == what)
             })

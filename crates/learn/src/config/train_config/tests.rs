@@ -49,7 +49,7 @@ fn bad_settings_are_refused_by_name() {
     );
 }
 
-/// Every run of a file believed in 525 steps: budgets by the step, Saute's horizon and the random
+/// Every run of a file assumed 525 steps: budgets by the step, Saute's horizon and the random
 /// steps that spread worlds out were those of other episodes.
 #[test]
 fn episodes_of_a_file_are_as_long_as_it_says() {
