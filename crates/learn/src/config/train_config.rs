@@ -1,6 +1,5 @@
 //! The settings of a run, all of them.
 
-
 use hasard_engine::simd::{Family, Simd};
 use serde::{Deserialize, Serialize};
 
