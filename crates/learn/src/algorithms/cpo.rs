@@ -8,7 +8,7 @@
 use crate::algorithms::surrogate::{centred, standardised};
 use crate::algorithms::trust_region::{TrustRegion, train_critics};
 use crate::algorithms::{Algorithm, Signal};
-use crate::config::TrainConfig;
+use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};
 use crate::learning::loss::{Heads, Loss};
@@ -16,6 +16,7 @@ use crate::learning::metrics::Means;
 
 /// Constrained policy optimisation.
 pub struct Cpo {
+    settings: LearningConfig,
     region: TrustRegion,
 }
 
@@ -23,7 +24,7 @@ impl Cpo {
     /// CPO with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> Cpo {
-        Cpo { region: TrustRegion::new(config) }
+        Cpo { settings: config.learning.clone(), region: TrustRegion::new(config) }
     }
 }
 
@@ -123,7 +124,7 @@ impl Algorithm for Cpo {
         let relative = |signal: &Signal| signal.episode_excess() / signal.episode_budget.max(1.0);
         let worst = (0..signals.len())
             .max_by(|&a, &b| relative(&signals[a]).total_cmp(&relative(&signals[b])));
-        let advantages = standardised(minibatch.advantages());
+        let advantages = standardised(minibatch.advantages(), &self.settings);
         let costs = centred(&minibatch.costs()[worst.unwrap_or(0)].advantages);
         let reward_loss = |heads: &Heads| -> Loss {
             heads.mean([&heads.ratio], |row, [ratio]| -(ratio * advantages[row]))

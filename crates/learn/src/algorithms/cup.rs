@@ -112,7 +112,7 @@ impl Algorithm for Cup {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = standardised(minibatch.advantages());
+        let advantages = standardised(minibatch.advantages(), &self.settings);
         learner.descend(
             minibatch,
             |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means),

@@ -66,7 +66,8 @@ impl Algorithm for Focops {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = standardised(&lagrangian_advantages(minibatch, &self.multipliers()));
+        let advantages =
+            standardised(&lagrangian_advantages(minibatch, &self.multipliers()), &self.settings);
         learner.descend(
             minibatch,
             |heads, batch, means| self.loss(&advantages, heads, batch, means),

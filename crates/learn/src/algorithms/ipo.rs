@@ -58,7 +58,8 @@ impl Algorithm for Ipo {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = standardised(&lagrangian_advantages(minibatch, &self.penalties));
+        let advantages =
+            standardised(&lagrangian_advantages(minibatch, &self.penalties), &self.settings);
         learner.descend(
             minibatch,
             |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means),

@@ -288,7 +288,7 @@ fn ppo_and_its_value_and_exploration_losses() {
         let mut config = config(AlgorithmKind::PpoLag, preset);
         config.learning.exploration = exploration;
         let case = Case::new(discrete(), spread);
-        let advantages = standardised(&case.advantages[0]);
+        let advantages = standardised(&case.advantages[0], &config.learning);
         case.compare(
             "PPO",
             |heads, batch, means| ppo::loss(&advantages, heads, batch, &config.learning, means),
@@ -305,7 +305,7 @@ fn ppo_with_continuous_parts() {
     let config = config(AlgorithmKind::Ppo, Preset::Paper);
     let mut case = Case::new(ActionShape { sizes: vec![3], deltas: 2 }, 0.1);
     case.exploration = 0.0;
-    let advantages = standardised(&case.advantages[0]);
+    let advantages = standardised(&case.advantages[0], &config.learning);
     case.compare(
         "PPO with normals",
         |heads, batch, means| ppo::loss(&advantages, heads, batch, &config.learning, means),
@@ -331,7 +331,7 @@ fn p3o_counts_advantage_and_excess_in_one_unit() {
             let p3o = p3o::P3o::new(&config);
             let mut case = Case::new(discrete(), 0.3);
             case.advantages[1].iter_mut().for_each(|value| *value = *value * scale + 3.0 * scale);
-            let advantages = standardised(&case.advantages[0]);
+            let advantages = standardised(&case.advantages[0], &config.learning);
             let raw: Vec<f64> = case.advantages[1].iter().map(|&value| f64::from(value)).collect();
             let mean = raw.iter().sum::<f64>() / ROWS as f64;
             let sigma = (raw.iter().map(|value| (value - mean).powi(2)).sum::<f64>()
@@ -373,7 +373,7 @@ fn focops_counts_near_samples_alone() {
     let config = config(AlgorithmKind::Focops, Preset::Paper);
     let focops = focops::Focops::new(&config);
     let case = Case::new(discrete(), 0.15);
-    let advantages = standardised(&case.advantages[0]);
+    let advantages = standardised(&case.advantages[0], &config.learning);
     let at: Vec<f64> = case.outputs.iter().map(|&v| f64::from(v)).collect();
     let near: Vec<bool> = (0..ROWS)
         .map(|i| case.divergence_from(case.row(&at, i), &case.old_row(i)) <= 0.02)

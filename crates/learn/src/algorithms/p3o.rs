@@ -41,7 +41,7 @@ impl P3o {
 
     /// The penalty of one constraint from the advantages of its cost, in raw units.
     fn penalty(&self, heads: &Heads, advantages: &[f32], signal: &Signal) -> Loss {
-        let (advantages, deviation) = standardised_by(advantages);
+        let (advantages, deviation) = standardised_by(advantages, 0.0);
         let expected = if self.clipped {
             let surrogate = heads.mean([&heads.ratio], |row, [ratio]| {
                 (ratio * advantages[row])
@@ -82,7 +82,7 @@ impl Algorithm for P3o {
         signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = standardised(minibatch.advantages());
+        let advantages = standardised(minibatch.advantages(), &self.settings);
         let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| {
             self.loss(&advantages, signals, heads, batch, means)
         };

@@ -49,7 +49,7 @@ impl Algorithm for Ppo {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = standardised(minibatch.advantages());
+        let advantages = standardised(minibatch.advantages(), &self.settings);
         learner.descend(
             minibatch,
             |heads, batch, means| loss(&advantages, heads, batch, &self.settings, means),

@@ -44,7 +44,8 @@ impl Algorithm for PpoLag {
     ) -> Result<(), LearnError> {
         // The original divides by one plus the multipliers under PID control; that cancels in the
         // standardisation.
-        let advantages = standardised(&lagrangian_advantages(minibatch, &self.multipliers()));
+        let advantages =
+            standardised(&lagrangian_advantages(minibatch, &self.multipliers()), &self.settings);
         learner.descend(
             minibatch,
             |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means),

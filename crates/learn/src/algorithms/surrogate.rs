@@ -10,18 +10,20 @@ use crate::learning::policy::Column;
 /// Bounds of the probability ratio: a sample so far off the policy that acted says nothing.
 const RATIO_BOUNDS: (f64, f64) = (0.05, 20.0);
 
-/// Zero mean and unit (unbiased) deviation.
+/// Zero mean and unit (unbiased) deviation, or less: advantages that are all next to nothing are the
+/// critics' noise, which is not blown up beyond what `advantage_floor` says.
 #[must_use]
-pub fn standardised(values: &[f32]) -> Vec<f64> {
-    standardised_by(values).0
+pub fn standardised(values: &[f32], settings: &LearningConfig) -> Vec<f64> {
+    standardised_by(values, settings.advantage_floor).0
 }
 
-/// The same, and the deviation that they were divided by.
+/// Zero mean and unit (unbiased) deviation, and the deviation that they were divided by: at least
+/// `floor`.
 #[must_use]
-pub fn standardised_by(values: &[f32]) -> (Vec<f64>, f64) {
+pub fn standardised_by(values: &[f32], floor: f64) -> (Vec<f64>, f64) {
     let centred = centred(values);
     let squares: f64 = centred.iter().map(|value| value * value).sum();
-    let deviation = (squares / (values.len() as f64 - 1.0).max(1.0)).sqrt().max(1e-7);
+    let deviation = (squares / (values.len() as f64 - 1.0).max(1.0)).sqrt().max(floor.max(1e-7));
     (centred.iter().map(|value| value / deviation).collect(), deviation)
 }
 
@@ -139,4 +141,30 @@ pub fn note_policy(heads: &Heads, minibatch: &Minibatch<'_>, clip: f64, means: &
         "clip_fraction",
         mean(&|ratio| f64::from(u8::from(!(1.0 / (1.0 + clip)..=1.0 + clip).contains(&ratio)))),
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noise of a thousandth stays small under a floor of a hundredth, real advantages are divided
+    /// by their own deviation, and all that are alike give zeros.
+    #[test]
+    fn a_floor_keeps_noise_small() {
+        let deviation = |values: &[f64]| {
+            let squares: f64 = values.iter().map(|value| value * value).sum();
+            (squares / (values.len() as f64 - 1.0)).sqrt()
+        };
+        let noise = [0.001_f32, -0.001, 0.001, -0.001];
+        let real = noise.map(|value| 100.0 * value);
+        for (floor, small, large) in
+            [(0.0, 1.0, 1.0), (0.01, 0.11547, 1.0), (1.0, 0.0011547, 0.11547)]
+        {
+            for (values, expected) in [(noise, small), (real, large)] {
+                let found = deviation(&standardised_by(&values, floor).0);
+                assert!((found - expected).abs() < 1e-4 * expected, "{found} for {floor}");
+            }
+        }
+        assert_eq!(standardised_by(&[3.0; 4], 0.0).0, [0.0; 4]);
+    }
 }

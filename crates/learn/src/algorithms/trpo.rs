@@ -44,8 +44,8 @@ impl Trpo {
         mixed: Vec<f32>,
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = standardised(&mixed);
-        let reward_advantages = standardised(minibatch.advantages());
+        let advantages = standardised(&mixed, &self.settings);
+        let reward_advantages = standardised(minibatch.advantages(), &self.settings);
         let consistent = self.consistent;
         let (kind, coefficient) = (self.settings.exploration, minibatch.exploration_coefficient);
         let objective = |heads: &Heads, advantages: &[f64], explore: bool| -> Loss {

@@ -189,7 +189,7 @@ impl EnvConfig {
     }
 
     /// The environment of each task.
-    fn env_ids(&self) -> Result<Vec<EnvId>, LearnError> {
+    pub(super) fn env_ids(&self) -> Result<Vec<EnvId>, LearnError> {
         self.tasks().iter().map(EnvConfig::env_id).collect()
     }
 

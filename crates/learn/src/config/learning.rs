@@ -96,6 +96,11 @@ pub struct LearningConfig {
     pub gamma: f64,
     /// Lambda of the advantage estimate.
     pub gae_lambda: f64,
+    /// Least deviation that advantages are divided by, in units of reward: those that deviate less
+    /// are made smaller than 1, so that while nothing is earned a policy does not follow the noise
+    /// of its critics; 0 for none.
+    #[serde(default)]
+    pub advantage_floor: f64,
     /// Learning rate; set alone, by `--set`, it is constant.
     pub rate: f64,
     /// Learning rate at the end of the schedule, reached linearly; `null` for a constant one.

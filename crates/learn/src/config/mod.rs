@@ -20,6 +20,7 @@ pub mod numbers;
 mod own_scenario;
 pub mod place;
 mod presets;
+mod quick;
 mod ranges;
 mod reporting;
 mod sampling;

@@ -7,28 +7,12 @@ use crate::config::{
     Exploration, LearningConfig, MultiplierUpdate, NetworkConfig, Preset, Products,
     ReportingConfig, ReturnNormaliser, SamplingConfig, TrainConfig,
 };
-use crate::config::{Convolution, Initialisation, RecurrentCell, second_order};
+use crate::config::{Convolution, Initialisation, RecurrentCell, quick, second_order};
 
 /// Tics of the longest episode.
 const EPISODE_TICS: u32 = 2100;
 
 impl TrainConfig {
-    /// Makes the run so long, with what its preset makes of it.
-    pub fn set_frames(&mut self, frames: u64) {
-        self.frames = frames;
-        if self.preset == Preset::Quick {
-            self.algorithm_settings.pid_reference_budget = Some(reference_budget(frames));
-        }
-    }
-
-    /// Gives it so many worlds; `quick` has no more minibatches than those.
-    pub fn set_lanes(&mut self, lanes: usize) {
-        self.sampling.lanes = lanes;
-        if self.preset == Preset::Quick {
-            self.learning.minibatches = self.learning.minibatches.min(lanes.max(1));
-        }
-    }
-
     /// As [`TrainConfig::new`] for worlds that are in no registry, such as those of tests.
     #[must_use]
     pub fn plain(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> TrainConfig {
@@ -57,6 +41,7 @@ impl TrainConfig {
             // The tables' PPOLag was held to 0.1 or 0.01 a step: 52.5 or 5.25 in an episode of 525,
             // where the others had 50 or 5.
             budget_share: if lagrangian_of_tables { 1.05 } else { 1.0 },
+            budget_margin: 0.0,
             constraint_statistic: if released {
                 ConstraintStatistic::StepMean
             } else {
@@ -98,6 +83,7 @@ impl TrainConfig {
                 recurrence: None,
                 gamma: 0.99,
                 gae_lambda: 0.95,
+                advantage_floor: 0.0,
                 rate: 1e-4,
                 final_rate: None,
                 schedule_frames: None,
@@ -192,52 +178,13 @@ impl TrainConfig {
             env,
         };
         if preset == Preset::Quick {
-            quicken(&mut config);
+            quick::quicken(&mut config);
         }
         if separate && !released {
             second_order::gather_more(&mut config);
         }
         config
     }
-}
-
-/// The reference budget of `quick`. What a multiplier has to become is a matter of the task, and a
-/// short run has few updates to get there: 450 for 2 million frames, less for longer ones, with the
-/// root of their length (docs/tried/levers.md).
-fn reference_budget(frames: u64) -> f64 {
-    (450.0 * (2_000_000.0 / frames.max(1) as f64).sqrt()).round().clamp(45.0, 450.0)
-}
-
-/// Settings that learn within minutes.
-fn quicken(config: &mut TrainConfig) {
-    config.set_frames(10_000_000);
-    // A fifth of the arithmetic of the original's network: three times the frames in the same time,
-    // and no less learned from each (docs/tried/quick_network.md).
-    config.network.convolutions = vec![
-        Convolution { channels: 32, kernel: 8, stride: 6 },
-        Convolution { channels: 32, kernel: 3, stride: 2 },
-        Convolution { channels: 32, kernel: 3, stride: 2 },
-    ];
-    config.network.dense = vec![256];
-    config.network.recurrent = Some(256);
-    config.learning.rate = 5e-4;
-    config.learning.final_rate = Some(1e-4);
-    config.learning.exploration_coefficient = 0.003;
-    // A trust region is made for one step a rollout.
-    let (passes, minibatches, rate) =
-        if config.algorithm.separates_networks() { (1, 1, 0.01) } else { (2, 4, 0.04) };
-    (config.learning.epochs, config.learning.minibatches) = (passes, minibatches);
-    // It would spare one step in eight.
-    config.learning.reuse_forward = false;
-    // Once a rollout.
-    config.algorithm_settings.multiplier_rate = rate;
-    // The integral alone runs in circles, which a large proportional part damps; and what a
-    // multiplier lags behind a policy that grows better at earning is taken off the budget
-    // beforehand. docs/tried/multiplier_rate.md and levers.md have the numbers.
-    config.algorithm_settings.pid_gains = (1.5, rate, 0.0);
-    (config.algorithm_settings.pid_initial, config.algorithm_settings.pid_decay) = (0.0, 0.0);
-    config.budget_share = 0.8;
-    config.reporting.report_seconds = 5.0;
 }
 
 #[cfg(test)]
@@ -270,35 +217,14 @@ mod tests {
             make(AlgorithmKind::Trpo, Preset::Released).algorithm_settings.fisher_fraction,
             1.0
         );
-        let mut quick = make(AlgorithmKind::PpoLag, Preset::Quick);
-        assert_eq!((paper.budget_share, quick.budget_share), (1.0, 0.8));
         for plain in [&paper, &released] {
-            assert_eq!(
-                (plain.algorithm_settings.pid_reference_budget, plain.budget_share),
-                (None, 1.0)
-            );
-        }
-        // 450 * sqrt(2 / 10), and between 45 and 450.
-        let reference = |config: &TrainConfig| config.algorithm_settings.pid_reference_budget;
-        assert_eq!(reference(&quick), Some(201.0));
-        for (frames, budget) in
-            [(1, 450.0), (2_000_000, 450.0), (8_000_000, 225.0), (u64::MAX, 45.0)]
-        {
-            quick.set_frames(frames);
-            assert_eq!((quick.frames, reference(&quick)), (frames, Some(budget)));
+            let settings = &plain.algorithm_settings;
+            assert_eq!((settings.pid_reference_budget, plain.budget_share), (None, 1.0));
+            assert_eq!((plain.budget_margin, plain.learning.advantage_floor), (0.0, 0.0));
         }
         let mut longer = paper.clone();
         longer.set_frames(7);
         assert_eq!(longer, TrainConfig { frames: 7, ..paper.clone() });
-        assert_eq!((quick.learning.epochs, quick.learning.minibatches), (2, 4));
-        let few = |settings: &[&str]| {
-            let settings: Vec<String> = settings.iter().map(|one| (*one).to_string()).collect();
-            quick.with_all(&settings).unwrap().learning.minibatches
-        };
-        assert_eq!((few(&["sampling.lanes=2"]), few(&["sampling.lanes=64"])), (2, 4));
-        assert_eq!(few(&["learning.minibatches=3", "sampling.lanes=2"]), 3, "what is set stays");
-        let trust = make(AlgorithmKind::Cpo, Preset::Quick).learning;
-        assert_eq!((trust.epochs, trust.minibatches), (1, 1));
         let text = serde_json::to_string(&paper).unwrap();
         assert_eq!(serde_json::from_str::<TrainConfig>(&text).unwrap(), paper);
     }

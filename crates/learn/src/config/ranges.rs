@@ -49,6 +49,7 @@ impl TrainConfig {
         for (name, given, low, high) in [
             ("gamma", learning.gamma, 0.0, 1.0),
             ("lambda of the advantages", learning.gae_lambda, 0.0, 1.0),
+            ("learning.advantage_floor", learning.advantage_floor, 0.0, f64::MAX),
             ("the learning rate", learning.rate, 0.0, 10.0),
             ("the final learning rate", learning.final_rate.unwrap_or(0.0), 0.0, 10.0),
             ("the target divergence", learning.target_kl.unwrap_or(0.0), 0.0, f64::MAX),
@@ -73,6 +74,7 @@ impl TrainConfig {
             ("learning.auxiliary_labels", learning.auxiliary_labels, 0.0, 1e3),
             ("network.policy_scale", self.network.policy_scale, 0.0, 10.0),
             ("the share of the budget", self.budget_share, 0.0, 2.0),
+            ("budget_margin", self.budget_margin, 0.0, 1e3),
             ("the rate of the multiplier", settings.multiplier_rate, 0.0, HUGE),
             (
                 "the reference budget of the PID",

@@ -254,7 +254,7 @@ mod tests {
         );
         let other = with(&["learning.gamma=0.5"]);
         let (name, own, others) = one.unlike(&other).unwrap();
-        assert_eq!((name.as_str(), own, others), ("learning.gamma", 0.99.into(), 0.5.into()));
+        assert_eq!((name.as_str(), own, others), ("learning.gamma", 0.97.into(), 0.5.into()));
     }
 
     #[test]

@@ -62,6 +62,12 @@ pub struct TrainConfig {
     /// whole budget.
     #[serde(default = "whole")]
     pub budget_share: f64,
+    /// How far below a budget learning aims at least, in standard deviations of what the latest
+    /// episodes cost, but never below half of the budget: the more costs scatter, the more a mean
+    /// over a few hundred episodes may be off. 0.42 are three half-widths of the 95 % interval of
+    /// 200 episodes. It holds for constraints on the mean of episodes, not for PPOSaute.
+    #[serde(default)]
+    pub budget_margin: f64,
     /// What they are held against.
     pub constraint_statistic: ConstraintStatistic,
     /// Layers.

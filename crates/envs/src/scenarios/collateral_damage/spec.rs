@@ -14,6 +14,7 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     cost_terms: COST_TERMS,
     rockets_shed: true,
     saute_unsafe_reward: -0.1,
+    prompt: true,
     paper_place: 3,
     number: 1,
     moments: (MOMENTS, 1),

@@ -133,6 +133,9 @@ pub struct ScenarioSpec {
     /// PPOCost's price of a unit of cost, by preset (paper, released, tables) and constraint (soft,
     /// hard).
     pub penalty_scales: [[f64; 2]; 3],
+    /// What an action earns or costs follows within a second or two, so that learning need not look
+    /// far ahead.
+    pub prompt: bool,
     /// Place in the paper's tables, from 0.
     pub paper_place: usize,
     /// What stands for it in the fingerprint of a state.
@@ -172,6 +175,7 @@ impl ScenarioSpec {
             rockets_shed: false,
             saute_unsafe_reward: -0.01,
             penalty_scales: [[1.0; 2]; 3],
+            prompt: false,
             paper_place: usize::MAX,
             number: -1,
             moments: (&[], 0),

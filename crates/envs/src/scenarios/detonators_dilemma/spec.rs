@@ -13,6 +13,7 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     budgets: [5.0; 3],
     cost_terms: COST_TERMS,
     early_creatures: true,
+    prompt: true,
     paper_place: 5,
     number: 2,
     moments: (MOMENTS, 4),

@@ -14,6 +14,7 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     cost_terms: COST_TERMS,
     saute_unsafe_reward: -0.025,
     penalty_scales: [[1.0; 2], [1.0; 2], [1.0, 0.3]],
+    prompt: true,
     paper_place: 2,
     number: 4,
     moments: (MOMENTS, 0),

@@ -12,6 +12,7 @@ use hasard_engine::map::{Map, MapSource};
 pub static SPEC: ScenarioSpec = ScenarioSpec {
     cost_terms: COST_TERMS,
     textures: TEXTURES,
+    prompt: true,
     paper_place: 1,
     number: 5,
     moments: (MOMENTS, 4),

@@ -91,6 +91,26 @@ fn annealed_aims_start_at_the_first_episodes() {
     assert!(!written.contains("first"), "{written}");
 }
 
+/// By hand: costs of 20, 30 and 40 have a deviation of 10, of which 0.4 are taken off a budget of
+/// 50; jumps of 1, 1 and 1 have none, and their aim is the share of 0.95 of 2.
+#[test]
+fn aims_keep_a_margin_by_how_costs_scatter() {
+    let mut config =
+        TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+    (config.budget_share, config.budget_margin) = (0.95, 0.4);
+    config.constraints = vec![
+        Constraint { term: None, budget: 50.0 },
+        Constraint { term: Some("jumps".into()), budget: 2.0 },
+    ];
+    let mut watch = Watch::new(&config);
+    for cost in [20.0, 30.0, 40.0] {
+        watch.add(&episode(cost, 1.0), &config.constraints).unwrap();
+    }
+    let aims: Vec<f64> =
+        watch.signals(&config, 0.5, &[0.0; 2]).iter().map(|one| one.episode_budget).collect();
+    assert!((aims[0] - 46.0).abs() < 1e-9 && (aims[1] - 1.9).abs() < 1e-9, "{aims:?}");
+}
+
 /// Two tasks with a budget each: what the one costs is no news of the other, neither in the
 /// means nor in what is new.
 #[test]
