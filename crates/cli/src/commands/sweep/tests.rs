@@ -177,3 +177,25 @@ fn progress_says_what_is_done_what_came_of_it_and_what_is_left() {
         "{line}"
     );
 }
+
+/// The campaign's files, whatever `quick` has become since, ask for what its recorded runs had.
+#[test]
+fn the_campaigns_files_ask_for_its_recorded_runs() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let mut files = 0;
+    let mut found = 0;
+    for entry in std::fs::read_dir(format!("{root}/docs/campaign")).unwrap() {
+        let file = entry.unwrap().path();
+        let words = format!("{} --seeds 11 --out {root}/docs/results/campaign", file.display());
+        let jobs = jobs(&words);
+        let configs = settings(&jobs).unwrap();
+        for (job, config) in jobs.iter().zip(&configs) {
+            if let Err(failure) = fits(job, config) {
+                panic!("{}: {failure:?}", file.display());
+            }
+            found += usize::from(job.directory.join("config.json").exists());
+        }
+        files += 1;
+    }
+    assert!(files == 11 && found > 150, "{files} files, {found} runs");
+}
