@@ -144,8 +144,8 @@ pub const METRICS: &[Metric] = &[
     metric(
         "aimed_budget",
         "cost",
-        "learning.budget_annealing",
-        "Cost of an episode that learning aims at while budgets come down, of a constraint on the whole cost.",
+        "learning.budget_annealing, budget_margin",
+        "Cost of an episode that learning aims at, where budgets come down or leave room for how costs scatter, of a constraint on the whole cost.",
     ),
     metric("aimed_budget/TERM", "cost", NAMED, "The same of the constraint on a named term."),
     metric(

@@ -75,6 +75,8 @@ pub const FRAME_SKIP: u64 = 4;
 pub struct Config {
     /// Id of the environment.
     pub env: String,
+    /// The file of a task of one's own, where the run says.
+    pub file: Option<String>,
     /// Name of the scenario, as in the id.
     pub scenario: String,
     /// Its level; the last one of a curriculum.
@@ -188,6 +190,7 @@ impl Config {
         {
             level = last;
         }
+        let file = options.get("env.scenario_file.path").cloned();
         options.retain(|key, _| !NOT_IDENTITY.iter().any(|beginning| below(key, beginning)));
         let released =
             options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
@@ -260,6 +263,8 @@ impl Config {
             ("learning.auxiliary_depth", "0"),
             ("learning.auxiliary_labels", "0"),
             ("network.policy_scale", "1"),
+            ("learning.advantage_floor", "0"),
+            ("budget_margin", "0"),
         ] {
             if options.get(key).is_some_and(|value| value.eq_ignore_ascii_case(usual)) {
                 options.remove(key);
@@ -274,6 +279,7 @@ impl Config {
             .filter(|frames| frames.is_finite());
         Ok(Config {
             env,
+            file,
             scenario,
             level,
             algo,
@@ -291,6 +297,12 @@ impl Config {
     #[must_use]
     pub fn budget(&self) -> Option<f64> {
         self.constraints.iter().find(|one| one.term.is_none()).map(|one| one.budget)
+    }
+
+    /// What a command takes for the environment: its id, or the file of a task of one's own.
+    #[must_use]
+    pub fn task(&self) -> &str {
+        self.file.as_deref().unwrap_or(&self.env)
     }
 
     /// The rule set that it was run under, if the file says.

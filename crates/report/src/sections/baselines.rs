@@ -131,13 +131,15 @@ impl<'a> Baselines<'a> {
                 }
                 let file =
                     format!("random-{env}-{rules}{}", options.replace(" --", "-").replace(' ', ""));
+                let task = config.task();
                 commands.push(format!(
-                    "hasard rollout {env} --policy random --episodes 100 --rules {rules}{options} --json > runs/{file}.jsonl"
+                    "hasard rollout {task} --policy random --episodes 100 --rules {rules}{options} --json > runs/{file}.jsonl"
                 ));
             }
             if self.ppo(group).is_none() {
                 commands.push(format!(
-                    "hasard train {} --algo PPO --rules {rules} --out ...",
+                    "hasard train {} --algo PPO --rules {rules} --out runs/{}-PPO",
+                    config.task(),
                     config.env
                 ));
             }
