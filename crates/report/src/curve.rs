@@ -185,7 +185,7 @@ mod tests {
         let long: Vec<_> = (1..=10).map(|k| (f64::from(k) * 100.0, f64::from(k))).collect();
         let short: Vec<_> = (1..=5).map(|k| (f64::from(k) * 100.0, f64::from(k) + 2.0)).collect();
         let curve = Curve::of(
-            &Group { runs: vec![run(1, &long), run(2, &short)], told: Default::default() },
+            &Group { runs: vec![run(1, &long), run(2, &short)], shown: Default::default() },
             "return_mean",
         );
         assert_eq!(curve.seeds[0].1, long);
@@ -208,8 +208,11 @@ mod tests {
                 .map(|k| f64::from(k) * 1e6 / f64::from(reports))
                 .map(|x| (x, x / 1e5))
                 .collect();
-            Curve::of(&Group { runs: vec![run(1, &rows)], told: Default::default() }, "return_mean")
-                .mean
+            Curve::of(
+                &Group { runs: vec![run(1, &rows)], shown: Default::default() },
+                "return_mean",
+            )
+            .mean
         };
         let (often, seldom) = (of(230), of(10));
         assert_eq!(often.len(), seldom.len());
@@ -226,7 +229,7 @@ mod tests {
         let rows: Vec<_> =
             (1..=24_000).map(|k| (f64::from(k) * 4096.0, f64::from(k % 100))).collect();
         let curve = Curve::of(
-            &Group { runs: vec![run(1, &rows)], told: Default::default() },
+            &Group { runs: vec![run(1, &rows)], shown: Default::default() },
             "return_mean",
         );
         assert!(
@@ -246,7 +249,7 @@ mod tests {
                 run(1, &[(0.0, 0.0), (100.0, 10.0)]),
                 run(2, &[(0.0, 0.0), (50.0, 10.0), (100.0, 10.0)]),
             ],
-            told: Default::default(),
+            shown: Default::default(),
         };
         let curve = Curve::of(&group, "return_mean");
         let at_50 = curve.mean.iter().find(|point| point.frames == 50.0).unwrap();

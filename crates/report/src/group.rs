@@ -1,6 +1,6 @@
 //! Runs of one experiment that differ in their seed alone.
 
-use crate::run::{Config, Found, Kept, Run, TOLD, Warning};
+use crate::run::{Config, Found, Kept, Run, SHOWN, Warning};
 use crate::statistics::Estimate;
 use hasard_envs::Scenario;
 use std::collections::BTreeMap;
@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 pub struct Group {
     /// The runs, in the order of their seeds, no seed twice.
     pub runs: Vec<Run>,
-    /// The options that stand beside its results: see [`TOLD`].
-    pub told: BTreeMap<String, String>,
+    /// The options that stand beside its results: see [`SHOWN`].
+    pub shown: BTreeMap<String, String>,
 }
 
 /// Where the numbers of a table come from.
@@ -64,8 +64,8 @@ impl Group {
                         _ => kept.push(run),
                     }
                 }
-                let told = kept[0].config.options.iter().filter(|(key, _)| TOLD.contains(&key.as_str()));
-                Group { told: told.map(|(key, value)| (key.clone(), value.clone())).collect(), runs: kept }
+                let shown = kept[0].config.options.iter().filter(|(key, _)| SHOWN.contains(&key.as_str()));
+                Group { shown: shown.map(|(key, value)| (key.clone(), value.clone())).collect(), runs: kept }
             })
             .collect();
         tell_apart(&mut groups);
@@ -159,7 +159,7 @@ impl Group {
     /// none.
     #[must_use]
     pub fn options_line(&self, without: Option<&str>) -> String {
-        let options = self.told.iter().filter(|(key, _)| Some(key.as_str()) != without);
+        let options = self.shown.iter().filter(|(key, _)| Some(key.as_str()) != without);
         options.map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ")
     }
 }
@@ -167,9 +167,9 @@ impl Group {
 /// Adds, to experiments that would look the same, what they differ in.
 fn tell_apart(groups: &mut [Group]) {
     let seen: Vec<(Config, BTreeMap<String, String>)> =
-        groups.iter().map(|group| (group.config().clone(), group.told.clone())).collect();
-    let look = |(config, told): &(Config, BTreeMap<String, String>)| {
-        (config.env.clone(), config.algo.clone(), config.frames.map(f64::to_bits), told.clone())
+        groups.iter().map(|group| (group.config().clone(), group.shown.clone())).collect();
+    let look = |(config, shown): &(Config, BTreeMap<String, String>)| {
+        (config.env.clone(), config.algo.clone(), config.frames.map(f64::to_bits), shown.clone())
     };
     for (group, own) in groups.iter_mut().zip(&seen) {
         for (other, _) in seen.iter().filter(|other| look(other) == look(own)) {
@@ -177,7 +177,7 @@ fn tell_apart(groups: &mut [Group]) {
                 let value = own.0.options.get(key);
                 if value != other.options.get(key) {
                     group
-                        .told
+                        .shown
                         .insert(key.clone(), value.cloned().unwrap_or_else(|| "not given".into()));
                 }
             }

@@ -4,10 +4,10 @@
 
 mod synthetic;
 
-use hasard_media::episode::{EpisodeFile, Header, Outcome};
+use hasard_media::episode::Outcome;
 use hasard_report::write_report;
 use std::path::{Path, PathBuf};
-use synthetic::{Folder, Synthetic, write_heatmaps};
+use synthetic::{Folder, Synthetic, write_episode, write_heatmaps};
 
 const ENVS: [(&str, f64, f64); 6] = [
     ("ArmamentBurden", 9.0, 50.0),
@@ -90,29 +90,15 @@ fn write_experiments(root: &Path) {
                 {\"summary\":{\"return\":32}}\n";
     std::fs::write(root.join("main/RemedyRushLevel1-v0/PPOPID/seed1/eval.jsonl"), eval).unwrap();
     for episode in 0..4u32 {
-        let header = Header {
-            env: "RemedyRushLevel1-v0".into(),
-            options: [("full-actions".to_owned(), "true".to_owned())].into(),
-            seed: u64::from(episode),
-            program: "0.1.0".into(),
-            player: "human".into(),
-            steps: 0,
-            groups: 1,
-            deltas: 0,
-            outcome: None,
-        };
-        let mut file = EpisodeFile::new(header).unwrap();
-        for _ in 0..525 {
-            file.push(&[1], &[]).unwrap();
-        }
         let outcome = Outcome {
             episode_return: 40.0 + f64::from(episode),
             cost: 2.0,
             truncated: true,
             ..Outcome::default()
         };
-        file.set_outcome(outcome);
-        file.write(&root.join(format!("human/{episode}.episode"))).unwrap();
+        let path = root.join(format!("human/{episode}.episode"));
+        let full = [("full-actions", "true")];
+        write_episode(&path, "human", u64::from(episode), &full, 525, outcome);
     }
     let random: String = ENVS
         .iter()
@@ -461,40 +447,14 @@ fn a_persons_budget_follows_the_episodes_options() {
         ("strict", ("hard", "true"), 4.0),
         ("short", ("frame-skip", "1"), 6.0),
     ] {
-        let header = Header {
-            env: "RemedyRushLevel1-v0".into(),
-            options: [(option.0.to_owned(), option.1.to_owned())].into(),
-            seed: 1,
-            program: "0.1.0".into(),
-            player: player.into(),
-            steps: 0,
-            groups: 1,
-            deltas: 0,
-            outcome: None,
-        };
-        let mut file = EpisodeFile::new(header).unwrap();
-        file.push(&[1], &[]).unwrap();
-        file.set_outcome(Outcome { cost, ..Outcome::default() });
-        file.write(&folder.0.join(format!("{player}.episode"))).unwrap();
+        let path = folder.0.join(format!("{player}.episode"));
+        write_episode(&path, player, 1, &[option], 1, Outcome { cost, ..Outcome::default() });
     }
     for (name, episode_return, cost) in
         [("witness-RemedyRush1", 12.0, 0.0), ("witness-failed", 12.0, 3.0)]
     {
-        let header = Header {
-            env: "RemedyRushLevel1-v0".into(),
-            options: Default::default(),
-            seed: 1,
-            program: "0.1.0".into(),
-            player: "search".into(),
-            steps: 0,
-            groups: 1,
-            deltas: 0,
-            outcome: None,
-        };
-        let mut file = EpisodeFile::new(header).unwrap();
-        file.push(&[1], &[]).unwrap();
-        file.set_outcome(Outcome { episode_return, cost, ..Outcome::default() });
-        file.write(&folder.0.join(format!("{name}.episode"))).unwrap();
+        let outcome = Outcome { episode_return, cost, ..Outcome::default() };
+        write_episode(&folder.0.join(format!("{name}.episode")), "search", 1, &[], 1, outcome);
     }
     let out = folder.0.join("out");
     write_report(std::slice::from_ref(&folder.0), &out, "People").unwrap();

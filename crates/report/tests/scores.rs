@@ -2,9 +2,9 @@
 
 mod synthetic;
 
-use hasard_media::episode::{EpisodeFile, Header, Outcome};
+use hasard_media::episode::Outcome;
 use hasard_report::write_report;
-use synthetic::{Folder, Synthetic};
+use synthetic::{Folder, Synthetic, write_episode};
 
 /// By hand: random play returns 2 and PPO 12, so that 7 is half of the way; 4.5 with a half-width
 /// of 0.4 keeps a budget of 5, with 0.6 it does not.
@@ -47,21 +47,8 @@ fn a_seed_scores_by_its_last_policy_whatever_it_sees() {
     }
     for (option, value) in [("full-actions", "true"), ("frame-skip", "8")] {
         let options = [("rules", "tables"), (option, value)];
-        let header = Header {
-            env: "RemedyRushLevel1-v0".into(),
-            options: options.map(|(name, value)| (name.to_owned(), value.to_owned())).into(),
-            seed: 1,
-            program: "0.1.0".into(),
-            player: "random".into(),
-            steps: 0,
-            groups: 1,
-            deltas: 0,
-            outcome: None,
-        };
-        let mut file = EpisodeFile::new(header).unwrap();
-        file.push(&[1], &[]).unwrap();
-        file.set_outcome(Outcome { episode_return: 1000.0, ..Outcome::default() });
-        file.write(&runs.join(format!("{option}.episode"))).unwrap();
+        let outcome = Outcome { episode_return: 1000.0, ..Outcome::default() };
+        write_episode(&runs.join(format!("{option}.episode")), "random", 1, &options, 1, outcome);
     }
     std::fs::write(runs.join("random-RemedyRushLevel1-v0-tables.jsonl"), episodes).unwrap();
     let out = folder.0.join("out");

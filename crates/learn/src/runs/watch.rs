@@ -10,6 +10,7 @@ use crate::config::constraint::conditional_value_at_risk;
 use crate::config::{Constraint, ConstraintStatistic, MultiplierUpdate, TrainConfig};
 use crate::error::LearnError;
 use crate::runs::first_episodes::FirstEpisodes;
+use crate::statistics::deviation;
 
 /// What is kept of an episode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -202,21 +203,9 @@ impl Watch {
     #[must_use]
     pub fn aim(&self, config: &TrainConfig, constraint: usize, done: f64) -> f64 {
         let measured = self.first.as_ref().and_then(|first| first.mean(constraint));
-        let deviation = if config.keeps_a_margin() { self.deviation(constraint) } else { 0.0 };
-        config.aim_after(constraint, done, measured.unwrap_or_default(), deviation)
-    }
-
-    /// The (unbiased) standard deviation of what the latest episodes cost under a constraint; 0 of
-    /// fewer than two.
-    fn deviation(&self, constraint: usize) -> f64 {
         let costs: Vec<f64> =
             self.recent.iter().filter_map(|one| one.constrained[constraint]).collect();
-        if costs.len() < 2 {
-            return 0.0;
-        }
-        let mean = costs.iter().sum::<f64>() / costs.len() as f64;
-        let squares: f64 = costs.iter().map(|cost| (cost - mean).powi(2)).sum();
-        (squares / (costs.len() as f64 - 1.0)).sqrt()
+        config.aim_after(constraint, done, measured.unwrap_or_default(), deviation(&costs))
     }
 
     /// What each constraint costs at present, when so much of the training is over; nothing while

@@ -70,10 +70,22 @@ pub fn upper_bound(values: &[f64], outside: f64) -> f64 {
 
 /// The mean, and its standard error of the sample variance.
 fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let (mean, variance) = mean_and_variance(values);
+    (mean, (variance / values.len().max(1) as f64).sqrt())
+}
+
+/// The mean, and the unbiased variance of samples; 0 of fewer than two.
+fn mean_and_variance(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n.max(1.0);
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (mean, if n > 1.0 { (squares / (n - 1.0) / n).sqrt() } else { 0.0 })
+    (mean, if n > 1.0 { squares / (n - 1.0) } else { 0.0 })
+}
+
+/// The unbiased standard deviation of samples; 0 of fewer than two.
+#[must_use]
+pub fn deviation(values: &[f64]) -> f64 {
+    mean_and_variance(values).1.sqrt()
 }
 
 fn is_skewed(values: &[f64]) -> bool {

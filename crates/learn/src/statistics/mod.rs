@@ -9,6 +9,6 @@ mod quantiles;
 mod tails;
 
 pub use bootstrap::bca_interval;
-pub use estimate::{Estimate, skewness, upper_bound};
+pub use estimate::{Estimate, deviation, skewness, upper_bound};
 pub use quantiles::{normal_quantile, t_quantile};
 pub use tails::{Tails, tails};

@@ -36,7 +36,7 @@ const NOT_IDENTITY: &[&str] = &[
 /// Keys that are always shown beside a result if they are not at their usual value. Of the others,
 /// such as the learning rate, only those are shown that distinguish what would otherwise look the
 /// same.
-pub const TOLD: [&str; 13] = [
+pub const SHOWN: [&str; 13] = [
     "rules",
     "preset",
     "hard",

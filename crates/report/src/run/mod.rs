@@ -13,7 +13,7 @@ mod selected;
 mod task;
 
 pub use calibration::{Calibration, read_calibration};
-pub use config::{Config, FRAME_SKIP, TOLD, default_budget, scenario_and_level};
+pub use config::{Config, FRAME_SKIP, SHOWN, default_budget, scenario_and_level};
 pub use constraint::{Constraint, Kept};
 pub use discover::{Found, Origin, PlayerKey, discover};
 use episodes::own_episodes;

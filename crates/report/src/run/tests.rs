@@ -145,7 +145,7 @@ fn the_trainers_own_layout_is_understood() {
     let told: Vec<String> = config
         .options
         .iter()
-        .filter(|(key, _)| TOLD.contains(&key.as_str()))
+        .filter(|(key, _)| SHOWN.contains(&key.as_str()))
         .map(|(key, value)| format!("{key}={value}"))
         .collect();
     assert_eq!(
@@ -159,7 +159,7 @@ fn the_trainers_own_layout_is_understood() {
         ]
     );
     let rest: Vec<&str> =
-        config.options.keys().map(String::as_str).filter(|key| !TOLD.contains(key)).collect();
+        config.options.keys().map(String::as_str).filter(|key| !SHOWN.contains(key)).collect();
     assert_eq!(
         rest,
         [

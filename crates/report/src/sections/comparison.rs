@@ -85,7 +85,7 @@ pub(super) fn sections(groups: &[Group]) -> Vec<Section> {
     ));
     // Any other option in which some experiments differ and nothing else.
     let mut keys: Vec<String> =
-        groups.iter().flat_map(|group| group.told.keys().cloned()).collect();
+        groups.iter().flat_map(|group| group.shown.keys().cloned()).collect();
     keys.sort();
     keys.dedup();
     keys.retain(|key| !VARIED.contains(&key.as_str()));

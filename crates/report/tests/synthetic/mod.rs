@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses some of it")]
 
+use hasard_media::episode::{EpisodeFile, Header, Outcome};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -114,4 +115,32 @@ pub fn write_heatmaps(folder: &Path) {
         map.fill(20 + k * 36, 30 + k * 40, 14, 22, [120, 110, 90]);
     }
     hasard_media::png::write(&map, &folder.join("automap.png")).unwrap();
+}
+
+/// An episode of Remedy Rush 1 in a file: so many steps of one action, and what came of them.
+pub fn write_episode(
+    path: &Path,
+    player: &str,
+    seed: u64,
+    options: &[(&str, &str)],
+    steps: usize,
+    outcome: Outcome,
+) {
+    let header = Header {
+        env: "RemedyRushLevel1-v0".into(),
+        options: options.iter().map(|&(name, value)| (name.into(), value.into())).collect(),
+        seed,
+        program: "0.1.0".into(),
+        player: player.into(),
+        steps: 0,
+        groups: 1,
+        deltas: 0,
+        outcome: None,
+    };
+    let mut file = EpisodeFile::new(header).unwrap();
+    for _ in 0..steps {
+        file.push(&[1], &[]).unwrap();
+    }
+    file.set_outcome(outcome);
+    file.write(path).unwrap();
 }
