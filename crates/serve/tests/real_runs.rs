@@ -109,10 +109,14 @@ fn a_run_says_first_what_it_is_worth() {
     ));
     browser.wait("[...document.querySelectorAll('.told')].every((told) => /^at \\d/.test(told.innerText)) && new Set([...document.querySelectorAll('.told')].map((told) => told.firstChild.textContent)).size == 1");
     browser.wait("document.querySelectorAll('svg.chart path.pointer').length >= document.querySelectorAll('svg.chart').length");
-    // What differs from the preset stands first: how often it was evaluated, on how many episodes
-    // it was confirmed, and the aim, minibatches and reference budget that the preset had when it
-    // was trained.
-    browser.wait("document.querySelector('#settings table').innerText.includes('evaluation.every') && document.querySelectorAll('#settings > .scroll tbody tr').length == 5");
+    // What differs from the preset stands first, how often it was evaluated among it, and nothing
+    // that does not differ; all others are folded away below.
+    let rows = "[...document.querySelectorAll('#settings > .scroll tbody tr')]";
+    browser.wait(&format!("{rows}.some((row) => row.innerText.includes('evaluation.every'))"));
+    browser.wait(&format!(
+        "{rows}.every((row) => row.cells.length == 3 && row.cells[1].innerText != row.cells[2].innerText)"
+    ));
+    browser.wait("document.querySelectorAll('#settings details tbody tr').length > 50");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 

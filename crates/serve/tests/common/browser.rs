@@ -1,8 +1,8 @@
 //! A Chromium steered over WebDriver, by as little of the protocol as the tests need.
 
 use serde_json::{Value, json};
-use std::io::{Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -23,20 +23,27 @@ impl Browser {
             );
             return None;
         }
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let mut driver = Command::new("chromedriver");
-        let driver = driver
-            .arg(format!("--port={port}"))
-            .stdout(Stdio::null())
+        // The driver picks its port: one picked here could be another test's by the time it starts.
+        let mut driver = Command::new("chromedriver")
+            .arg("--port=0")
+            .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let mut browser = Browser { driver, port, session: String::new() };
-        let begun = Instant::now();
-        while TcpStream::connect(("127.0.0.1", port)).is_err() {
-            assert!(begun.elapsed() < Duration::from_secs(30), "chromedriver does not answer");
-            std::thread::sleep(Duration::from_millis(50));
+        let mut said = BufReader::new(driver.stdout.take().unwrap());
+        let mut port = None;
+        let mut line = String::new();
+        while port.is_none() && said.read_line(&mut line).is_ok_and(|read| read > 0) {
+            let word = line.trim_end().trim_end_matches('.').rsplit(' ').next();
+            port = word
+                .filter(|_| line.contains("successfully on port "))
+                .and_then(|word| word.parse().ok());
+            line.clear();
         }
+        // What it says later is read, so that it does not wait for a reader, nor find none.
+        std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
+        let port = port.expect("chromedriver does not say its port");
+        let mut browser = Browser { driver, port, session: String::new() };
         let mut args = vec![
             "--headless=new".to_owned(),
             "--no-sandbox".into(),
