@@ -110,6 +110,11 @@ pub fn settings(
             pointers.iter().map(move |pointer| (flag.clone(), (*pointer).to_string()))
         })
         .collect();
+    if args.device != saved.device {
+        // A card is asked for all worlds at once, the processor's threads each have a share.
+        let dealt = ["/sampling/samplers", "/sampling/world_threads"];
+        places.extend(dealt.map(|pointer| ("--device".into(), pointer.into())));
+    }
     for text in &args.set {
         let name = text.split('=').next().unwrap_or_default();
         places.push((format!("--set {name}"), setting_pointer(name)));
@@ -134,7 +139,10 @@ pub fn settings(
                 word(&name, wanted),
             )));
         }
-        changes.push(format!("{name}={}", wanted.unwrap_or(&Value::Null)));
+        let change = format!("{name}={}", wanted.unwrap_or(&Value::Null));
+        if !changes.contains(&change) {
+            changes.push(change);
+        }
     }
     Ok(changes)
 }
@@ -193,7 +201,10 @@ mod tests {
             ("--seed 1", &["seed=1"]),
             ("--threads 2", &["learning.threads=2", "sampling.samplers=2"]),
             ("--eval-every 4096", &["evaluation.every=4096"]),
-            ("--device vulkan", &["device=\"vulkan\""]),
+            (
+                "--device vulkan --threads 2",
+                &["device=\"vulkan\"", "learning.threads=2", "sampling.world_threads=2"],
+            ),
             ("--set learning.rate=0.0001", &["learning.rate=0.0001", "learning.final_rate=null"]),
         ] {
             let changes =

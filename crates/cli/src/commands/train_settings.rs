@@ -35,6 +35,12 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         config.learning.threads = usize::from(threads);
         config.sampling.samplers = usize::from(threads);
     }
+    if args.device != "cpu" {
+        // A card computes one batch of all worlds in the time of a small one: the threads step
+        // worlds, and do not each ask it for a share.
+        config.sampling.samplers = 1;
+        config.sampling.world_threads = config.learning.threads;
+    }
     if let Some(lanes) = args.envs {
         config.set_lanes(lanes as usize);
     }
@@ -132,6 +138,18 @@ pub(super) mod tests {
         assert_eq!((reference(""), reference("--frames 2M")), (Some(201.0), Some(450.0)));
         let set = "--frames 2M --set algorithm_settings.pid_reference_budget=45";
         assert_eq!(reference(set), Some(45.0));
+    }
+
+    /// A share a thread made training on a card four times slower.
+    #[test]
+    fn a_card_is_asked_for_all_worlds_at_once() {
+        let dealt = |line: &str| {
+            let sampling = config(line).unwrap().sampling;
+            (sampling.samplers, sampling.world_threads)
+        };
+        assert_eq!(dealt("--device wgpu --threads 6"), (1, 6));
+        assert_eq!(dealt("--device wgpu --threads 6 --set sampling.samplers=3"), (3, 6));
+        assert_eq!(dealt("--threads 6"), (6, 0));
     }
 
     #[test]

@@ -26,6 +26,10 @@ use hasard_engine::simd::Simd;
 /// activations, some 50 kB a row of the smallest network of the presets and 110 kB of the largest.
 const MOST_ROWS: usize = 2048;
 
+/// The same for every learner on a card, whose buffers have a greatest size: pixels of so many
+/// pictures of 160x120 are 1.9 GB, as 32-bit numbers.
+const MOST_ROWS_ON_A_CARD: usize = 8192;
+
 /// Networks, optimisers and running statistics.
 pub struct Learner {
     shape: ModelShape,
@@ -75,9 +79,13 @@ impl Learner {
         // The policy is the first head of the first network, at the front of the vector.
         shape.networks[0].scale_head(0, config.network.policy_scale as f32, &mut parameters);
         Learner {
-            networks: match config.learning.recurrence {
-                None => Stack::new(shape, device, config.learning.threads),
-                Some(_) => Stack::new(shape, device, config.learning.threads).in_parts(MOST_ROWS),
+            networks: {
+                let whole = Stack::new(shape, device, config.learning.threads);
+                match (config.learning.recurrence, device.is_card()) {
+                    (Some(_), _) => whole.in_parts(MOST_ROWS),
+                    (None, true) => whole.in_parts(MOST_ROWS_ON_A_CARD),
+                    (None, false) => whole,
+                }
             },
             optimisers: std::iter::repeat_n(&shape.networks, config.algorithm.optimisers())
                 .flatten()

@@ -53,6 +53,12 @@ impl ComputeDevice {
         }
     }
 
+    /// Whether it is a device of its own, beside the processor.
+    #[must_use]
+    pub fn is_card(&self) -> bool {
+        !matches!(self, ComputeDevice::Processor(_))
+    }
+
     /// The device of a name: `cpu`; with the cargo features of the same names `vulkan`, `cuda` and
     /// `wgpu` (Metal, Direct3D or Vulkan, whatever there is), with a colon and a number for another
     /// than the first; and, with any of them, `flex` (burn's processor backend, for comparison).
