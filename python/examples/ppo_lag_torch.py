@@ -5,9 +5,9 @@
     python python/examples/ppo_lag_torch.py --safety-budget 50 --safety-budget jumps=20        # two constraints
     tensorboard --logdir runs
 
-PPO: Schulman et al. 2017. The multipliers follow Stooke, Achiam, Abbeel 2020 (algorithm 2). Settings and formulas are those of
-`hasard train --preset quick --set budget_share=0.9 --set algorithm_settings.pid_reference_budget=45` for a budget of 50;
-docs/results/torch_example.md compares what both learn. One step of an environment is four frames, as the paper counts them.
+PPO: Schulman et al. 2017. The multipliers follow Stooke, Achiam, Abbeel 2020 (algorithm 2). Settings and formulas are those
+that `hasard train --preset quick` had on 2026-11-25; docs/results/torch_example.md has the options that give them, and compares
+what both learn. One step of an environment is four frames, as the paper counts them.
 """
 
 from __future__ import annotations

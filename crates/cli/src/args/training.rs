@@ -70,7 +70,7 @@ pub struct TrainArgs {
     /// Sampling and learning run side by side; the default on a graphics card
     #[arg(long = "async", conflicts_with = "sync")]
     pub asynchronous: bool,
-    /// Threads; results do not depend on their number  [default: all cores]
+    /// Threads; results do not depend on their number  [default: all cores, at most 16]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Plain kernels: the same bits on every machine, some six times slower.
@@ -172,7 +172,7 @@ pub struct SweepArgs {
     pub levels: Vec<u32>,
     #[arg(long, help = scenarios_help(), value_delimiter = ',', value_name = "NAMES")]
     pub scenarios: Vec<String>,
-    /// Frames of every run, such as 2M; changes nothing else
+    /// Frames of every run, such as 2M
     #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     pub frames: Option<u64>,
     /// Frames of every run times this, to try an experiment in small; the rates of multipliers grow

@@ -57,9 +57,9 @@ pub struct TrainConfig {
     pub episode_steps: u32,
     /// Constraints, each with its budget.
     pub constraints: Vec<Constraint>,
-    /// Share of each budget that learning aims at, whatever the algorithm: a policy that swings
-    /// about it still keeps a budget that is a little above. Evaluations hold costs against the
-    /// whole budget.
+    /// Share of each budget that learning aims at, whatever the algorithm, or less (see
+    /// `budget_margin`): a policy that swings about its aim then keeps the budget. Evaluations hold
+    /// costs against the whole budget.
     #[serde(default = "whole")]
     pub budget_share: f64,
     /// How far below a budget learning aims at least, in standard deviations of what the latest
