@@ -140,7 +140,7 @@ pub(super) mod tests {
         assert_eq!(reference(set), Some(45.0));
     }
 
-    /// A share a thread made training on a card four times slower.
+    /// With a share of the worlds for each thread, training on a card was four times slower.
     #[test]
     fn a_card_is_asked_for_all_worlds_at_once() {
         let dealt = |line: &str| {

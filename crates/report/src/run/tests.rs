@@ -142,14 +142,14 @@ fn the_trainers_own_layout_is_understood() {
         ("ArmamentBurdenLevel2-v0", "PPOCost", 4)
     );
     assert_eq!((config.safety_budget, config.cost_scale, config.frames), (5.0, 0.1, Some(2e6)));
-    let told: Vec<String> = config
+    let shown: Vec<String> = config
         .options
         .iter()
         .filter(|(key, _)| SHOWN.contains(&key.as_str()))
         .map(|(key, value)| format!("{key}={value}"))
         .collect();
     assert_eq!(
-        told,
+        shown,
         [
             "constraints=zone:2.5",
             "full_actions=true",

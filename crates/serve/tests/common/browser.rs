@@ -30,19 +30,18 @@ impl Browser {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let mut said = BufReader::new(driver.stdout.take().unwrap());
-        let mut port = None;
-        let mut line = String::new();
-        while port.is_none() && said.read_line(&mut line).is_ok_and(|read| read > 0) {
-            let word = line.trim_end().trim_end_matches('.').rsplit(' ').next();
-            port = word
-                .filter(|_| line.contains("successfully on port "))
-                .and_then(|word| word.parse().ok());
-            line.clear();
-        }
-        // What it says later is read, so that it does not wait for a reader, nor find none.
-        std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
-        let port = port.expect("chromedriver does not say its port");
+        let said = BufReader::new(driver.stdout.take().unwrap());
+        let (send, port) = std::sync::mpsc::channel();
+        // Read to its end, so that the driver does not wait for a reader, nor find none.
+        std::thread::spawn(move || {
+            for line in said.lines().map_while(Result::ok) {
+                let port = line.split("successfully on port ").nth(1);
+                if let Some(Ok(port)) = port.map(|port| port.trim_end_matches('.').parse()) {
+                    let _ = send.send(port);
+                }
+            }
+        });
+        let port = port.recv_timeout(Duration::from_secs(30)).expect("chromedriver says no port");
         let mut browser = Browser { driver, port, session: String::new() };
         let mut args = vec![
             "--headless=new".to_owned(),
