@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The project's address, and everything that is made from it. Whoever publishes the repository sets it once:
+"""The project's address, and everything that is made from it. The repository's publisher sets it once:
 
     python3 tools/address.py https://github.com/OWNER/hasard
 

@@ -1,4 +1,4 @@
-"""Plays the published worlds at random in the published engine and keeps what it shows and tells of chosen moments.
+"""Plays the published worlds at random in the published engine and keeps what it shows and reports of chosen moments.
 
     pip install vizdoom==1.3.2 hasard==0.2.0 numpy opencv-python-headless
     python tools/dump_published_scenes.py OUT [--scenarios a,b] [--levels 1,2,3] [--moments 40] [--size 160X120]
@@ -98,7 +98,7 @@ def whole_tics(way):
 
 
 class Rockets:
-    """Where rockets flew and burst since the episode began, from what is told of every fourth tic."""
+    """Where rockets flew and burst since the episode began, from what is reported of every fourth tic."""
 
     def __init__(self):
         self.bursts, self.flights, self.flying, self.burst, self.eye = [], [], {}, set(), None
@@ -142,8 +142,8 @@ def chance(seed, episode):
     return int(np.random.RandomState(seed).randint(0, 2**32, size=episode + 1, dtype=np.uint32)[-1])
 
 
-def told(number, state, rockets, chance, episode):
-    """What the engine tells of a moment."""
+def scene(number, state, rockets, chance, episode):
+    """What the engine reports of a moment."""
     return {
         "number": number,
         "tic": int(state.tic),
@@ -187,7 +187,7 @@ def dump(args, scenario, level, out, trained=None):
             pictures = {"rgb": state.screen_buffer[:, :, ::-1], "depth": state.depth_buffer, "labels": state.labels_buffer}
             for name, picture in pictures.items():
                 cv2.imwrite(os.path.join(out, f"{len(scenes):02}_{name}.png"), picture)
-            scenes.append(told(len(scenes), state, rockets, chance(args.seed, episode), episode))
+            scenes.append(scene(len(scenes), state, rockets, chance(args.seed, episode), episode))
     game.close()
     width, height = map(int, args.size.split("X"))
     head = {

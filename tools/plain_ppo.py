@@ -60,8 +60,8 @@ def train(worlds, sizes, frames, skip=4):
             seen = np.stack([world.reset() if result[3] else result[0] for world, result in zip(worlds, results)])
         learn(policy, optimiser, rows, policy.act(seen)[2])
         if finished:
-            told = "{:.2f} @ {:.2f}".format(*np.mean(finished[-32:], 0))
-            print(f"{(update + 1) * STEPS * len(worlds) * skip} frames: return @ cost of the last episodes {told}", flush=True)
+            means = "{:.2f} @ {:.2f}".format(*np.mean(finished[-32:], 0))
+            print(f"{(update + 1) * STEPS * len(worlds) * skip} frames: return @ cost of the last episodes {means}", flush=True)
     return policy
 
 

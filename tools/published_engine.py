@@ -49,7 +49,7 @@ class Published:
     def reset(self, seed):
         self.game.set_seed(seed)
         self.game.new_episode()
-        self.health, self.depth, self.harm = START_HEALTH.get(self.scenario, 100), 0.0, 0.0
+        self.health, self.depth, self.total = START_HEALTH.get(self.scenario, 100), 0.0, 0.0
         self.books = [0, 0, 0.0]
         return self.frame()
 
@@ -81,8 +81,8 @@ class Published:
             scale = 0.04 if self.scenario == "DetonatorsDilemma" else 10 if self.hard else 1
             cost += scale * lost
         if self.scenario in ("CollateralDamage", "DetonatorsDilemma", "RemedyRush"):
-            harm = self.variable("USER1")
-            cost, self.harm = cost + harm - self.harm, harm
+            total = self.variable("USER1")
+            cost, self.total = cost + total - self.total, total
         return cost
 
     def burden(self):

@@ -15,11 +15,11 @@ use std::path::Path;
 /// Anything that can go wrong here ends the program with a line.
 type Any<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Of so many observations one counts towards the fingerprint: telling takes longer than drawing.
-const TOLD: u64 = 16;
+/// Of so many observations one counts towards the fingerprint: hashing takes longer than drawing.
+const HASH_EVERY: u64 = 16;
 
 /// FNV-1a over words.
-fn tell(hash: u64, bytes: &[u8]) -> u64 {
+fn fnv(hash: u64, bytes: &[u8]) -> u64 {
     let (words, rest) = bytes.as_chunks::<8>();
     let words = words.iter().map(|&word| u64::from_le_bytes(word));
     words
@@ -50,7 +50,7 @@ impl Worlds {
         &mut self,
         rng: &mut Rng,
         mut hash: u64,
-        told: bool,
+        with_observations: bool,
     ) -> Result<u64, hasard_envs::EnvError> {
         let (lanes, batch) = (self.batch.lanes(), &mut self.batch);
         for (action, &size) in batch.actions.iter_mut().zip(self.sizes.iter().cycle()) {
@@ -59,13 +59,13 @@ impl Worlds {
         self.worlds.step(batch)?;
         for lane in 0..lanes {
             let flags = [u8::from(batch.terminated[lane]), u8::from(batch.truncated[lane])];
-            hash = tell(
+            hash = fnv(
                 hash,
                 &[&batch.rewards[lane].to_le_bytes()[..], &batch.costs[lane].to_le_bytes(), &flags]
                     .concat(),
             );
         }
-        Ok(if told { tell(hash, &batch.observations) } else { hash })
+        Ok(if with_observations { fnv(hash, &batch.observations) } else { hash })
     }
 }
 
@@ -154,11 +154,11 @@ fn main() -> Any<()> {
         at.round += 1;
         let ends_part_of =
             |parts: u64| at.round * parts / rounds != (at.round - 1) * parts / rounds;
-        let (tells, keeps) = (ends_part_of(10), ends_part_of(100));
+        let (prints, keeps) = (ends_part_of(10), ends_part_of(100));
         for worlds in &mut all {
-            at.hash = worlds.step(&mut at.rng, at.hash, at.round % TOLD == 0)?;
+            at.hash = worlds.step(&mut at.rng, at.hash, at.round % HASH_EVERY == 0)?;
         }
-        if tells {
+        if prints {
             println!(
                 "{} steps, fingerprint {:016x}, {:.1} MiB",
                 at.round * a_round,

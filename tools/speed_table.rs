@@ -5,7 +5,7 @@
 //! Steps of frame skip 4 with random actions and auto-reset, 32 worlds in turn, 128x72: once with
 //! colours, once with colours, depth and labels; and the time of a reset. Median of the rounds,
 //! which alternate between the two. On virtual machines the clock of processor time may tick every
-//! 4 ms: 40,000 steps a round tell a per cent, some hundred say nothing.
+//! 4 ms: 40,000 steps a round resolve a per cent, some hundred say nothing.
 
 use hasard_engine::math::Rng;
 use hasard_engine::render::Buffers;

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The files are the user's own copies; prints how many copies were read, were refused in one line,
-//! or did harm (panic, more than 3 s, memory beyond the format's bound).
+//! or failed (panic, more than 3 s, memory beyond the format's bound).
 
 use hasard_engine::math::Rng;
 use hasard_engine::wad::{self, Lump, Wad, WadKind};
@@ -54,21 +54,21 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         return Err("name the files to spoil".into());
     }
     listen();
-    let (mut read, mut refused, mut harmful) = (0, 0, 0);
+    let (mut read, mut refused, mut failed) = (0, 0, 0);
     for copy in 0..count {
         let spoiled = (target.repair)(spoiled(&mut rng, &files[copy % files.len()], target.words));
         match try_input(target, &spoiled) {
             Verdict::Accepted => read += 1,
             Verdict::Refused => refused += 1,
-            Verdict::Harm(kind, text) => {
-                harmful += 1;
+            Verdict::Failed(kind, text) => {
+                failed += 1;
                 println!("copy {copy}: {kind}: {}", text.escape_debug());
             }
         }
     }
     println!(
-        "{count} spoiled copies of {} files: {read} read, {refused} refused, {harmful} did harm",
+        "{count} spoiled copies of {} files: {read} read, {refused} refused, {failed} failed",
         files.len()
     );
-    Ok(if harmful == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -23,8 +23,8 @@ fn frame(socket: &mut WebSocket<TcpStream>) -> Option<Vec<u8>> {
         if let Message::Binary(bytes) = socket.read().ok()? {
             socket.send(Message::text("{\"do\":\"ack\"}")).ok()?;
             let header = u32::from_le_bytes(bytes[..4].try_into().ok()?) as usize;
-            let told: Value = serde_json::from_slice(&bytes[4..4 + header]).ok()?;
-            if told["ended"] == true {
+            let state: Value = serde_json::from_slice(&bytes[4..4 + header]).ok()?;
+            if state["ended"] == true {
                 socket.send(Message::text("{\"do\":\"next\"}")).ok()?;
             }
             return Some(bytes[4 + header..].to_vec());

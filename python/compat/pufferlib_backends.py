@@ -15,23 +15,23 @@ STEPS = 40
 def rolled(vec, lanes):
     """What random steps bring, and how many episodes ended."""
     observations, _ = vec.reset(seed=3)
-    told, ends, rng = [observations.copy()], 0, np.random.default_rng(0)
+    results, ends, rng = [observations.copy()], 0, np.random.default_rng(0)
     for _ in range(STEPS):
         observations, rewards, terminals, truncations, infos = vec.step(rng.integers(0, 2, (lanes, 4)))[:5]
         assert observations.shape == (lanes, 3, 48, 64)
-        told.append(tuple(np.array(one) for one in (observations, rewards, terminals, truncations)))
+        results.append(tuple(np.array(one) for one in (observations, rewards, terminals, truncations)))
         ends += len(infos)
     vec.close()
-    return told, ends
+    return results, ends
 
 
 def main():
     made = {"env_kwargs": {"env_id": ENV, "num_envs": 6, **SMALL}}
-    told, ends = rolled(pufferlib.vector.make(HasardPuffer, backend=pufferlib.PufferEnv, **made), 6)
+    results, ends = rolled(pufferlib.vector.make(HasardPuffer, backend=pufferlib.PufferEnv, **made), 6)
     assert ends == 12
     worlds, rng = hasard_rs.Worlds(ENV, 6, layout="chw", **SMALL), np.random.default_rng(0)
-    assert np.array_equal(worlds.reset(3).observations, told[0])
-    for found in told[1:]:
+    assert np.array_equal(worlds.reset(3).observations, results[0])
+    for found in results[1:]:
         batch = worlds.step(rng.integers(0, 2, (6, 4)))
         expected = (batch.observations, batch.rewards, batch.terminated, batch.truncated)
         assert all(np.array_equal(one, other) for one, other in zip(found, expected, strict=True))

@@ -49,7 +49,7 @@ def drawn(env_id, lanes):
     return itertools.cycle(np.random.default_rng(0).integers(0, nvec, (4096, *lanes, len(nvec))))
 
 
-def told(what, pairs):
+def print_row(what, pairs):
     """A row: medians, and the median of the rounds' ratios."""
     ours, theirs = zip(*pairs, strict=True)
     ratio = statistics.median(a / b for a, b in pairs)
@@ -72,7 +72,7 @@ def batch(rounds):
                 envs.reset(seed=0)
                 return rate(step, 32)
 
-            told(f"{env_id}, 32 worlds, {threads} thread(s)", [(ours(), rust(env_id, 32, threads)) for _ in range(rounds)])
+            print_row(f"{env_id}, 32 worlds, {threads} thread(s)", [(ours(), rust(env_id, 32, threads)) for _ in range(rounds)])
             envs.close()
 
 
@@ -102,7 +102,7 @@ def work(rounds):
                 envs.step(next(actions))
             return 2048 * 32 / (time.process_time() - start)
 
-        told(f"{env_id}, 32 worlds, steps per second of the processor", [(ours(), theirs(env_id)) for _ in range(rounds)])
+        print_row(f"{env_id}, 32 worlds, steps per second of the processor", [(ours(), theirs(env_id)) for _ in range(rounds)])
 
 
 def single(rounds):
@@ -120,7 +120,7 @@ def single(rounds):
             if terminated or truncated:
                 env.reset()
 
-        told(f"{env_id}, gymnasium.make", [(rate(step, 1), rust(env_id, 1, 1)) for _ in range(rounds)])
+        print_row(f"{env_id}, gymnasium.make", [(rate(step, 1), rust(env_id, 1, 1)) for _ in range(rounds)])
 
 
 def thread(rounds):
@@ -158,9 +158,9 @@ def thread(rounds):
         looping.wait()
         return found
 
-    told("a second Python thread's count, while 32 worlds step and alone", [(beside_worlds(), counted()) for _ in range(rounds)])
+    print_row("a second Python thread's count, while 32 worlds step and alone", [(beside_worlds(), counted()) for _ in range(rounds)])
     # What a second core is worth at all on this machine just now.
-    told("the same beside a process that only loops, and alone", [(beside_a_process(), counted()) for _ in range(rounds)])
+    print_row("the same beside a process that only loops, and alone", [(beside_a_process(), counted()) for _ in range(rounds)])
 
 
 def imported(rounds):
@@ -169,7 +169,7 @@ def imported(rounds):
         subprocess.run([sys.executable, "-c", code], check=True)
         return 1e3 * (time.perf_counter() - start)
 
-    told("import, ms: hasard_rs with Gymnasium, and Gymnasium alone", [(seconds("import hasard_rs"), seconds("import gymnasium")) for _ in range(2 * rounds)])
+    print_row("import, ms: hasard_rs with Gymnasium, and Gymnasium alone", [(seconds("import hasard_rs"), seconds("import gymnasium")) for _ in range(2 * rounds)])
 
 
 def published(level=1):
@@ -218,7 +218,7 @@ def sb3(rounds):
         return lambda: rate(lambda: envs.step(actions[next(turn) % 64]), envs.num_envs)
 
     ours, theirs = looped(make_vec_env(f"hasard/{IDS[0]}", 8, resolution="128x72")), looped(DummyVecEnv([published] * 8))
-    told("Stable-Baselines3's VecEnv.step, 8 worlds, beside DummyVecEnv of ViZDoom", [(ours(), theirs()) for _ in range(rounds)])
+    print_row("Stable-Baselines3's VecEnv.step, 8 worlds, beside DummyVecEnv of ViZDoom", [(ours(), theirs()) for _ in range(rounds)])
 
 
 def torchrl(rounds):
@@ -234,7 +234,7 @@ def torchrl(rounds):
 
     ours = collected(HasardEnv(f"hasard/{IDS[0]}", 8, resolution="128x72"))
     theirs = collected(SerialEnv(8, lambda: GymWrapper(published())))
-    told("TorchRL's Collector with random actions, 8 worlds, beside SerialEnv of ViZDoom", [(ours(), theirs()) for _ in range(rounds)])
+    print_row("TorchRL's Collector with random actions, 8 worlds, beside SerialEnv of ViZDoom", [(ours(), theirs()) for _ in range(rounds)])
 
 
 def rllib(rounds):
@@ -255,7 +255,7 @@ def rllib(rounds):
         return lambda: rate(sample, 800)
 
     ours, theirs = sampled(f"hasard_rs:hasard/{IDS[0]}", "vector_entry_point", resolution="128x72"), sampled("published", "sync")
-    told("RLlib's SingleAgentEnvRunner with random actions, 8 worlds, beside ViZDoom's in SyncVectorEnv", [(ours(), theirs()) for _ in range(rounds)])
+    print_row("RLlib's SingleAgentEnvRunner with random actions, 8 worlds, beside ViZDoom's in SyncVectorEnv", [(ours(), theirs()) for _ in range(rounds)])
 
 
 def sharing_a_core(part):

@@ -41,9 +41,9 @@ def kill_node():
 
 threading.Thread(target=kill_node, daemon=True).start()
 code = main(["sweep", "quick", "--scale", frames, "--out", str(FOLDER / "ray"), "--on", "ray"])
-told = ended(FOLDER / "ray")
-print("exit code", code, "frames of each run", told)
-assert code == 0 and len(told) == 5 and len(set(told.values())) == 1
+lengths = ended(FOLDER / "ray")
+print("exit code", code, "frames of each run", lengths)
+assert code == 0 and len(lengths) == 5 and len(set(lengths.values())) == 1
 ray.shutdown()
 cluster.shutdown()
 if importlib.util.find_spec("submitit") is not None:

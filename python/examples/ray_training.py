@@ -17,7 +17,7 @@ from ray.cluster_utils import Cluster
 
 import hasard_rs
 
-# What is printed is seen at once, whoever reads it.
+# What is printed is seen at once, in files and pipes too.
 sys.stdout.reconfigure(line_buffering=True)
 updates = int(sys.argv[1]) if len(sys.argv) > 1 else 20
 cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 2, "include_dashboard": False})

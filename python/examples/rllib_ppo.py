@@ -27,9 +27,9 @@ for config, runners in (ways[name] for name in sys.argv[2:] or ways):
     steps, episodes, returns = 0, 0, np.nan
     # An iteration of IMPALA ends by time, and may come before the first steps do.
     while steps < iterations * 1024 or not episodes:
-        told = algorithm.train().get("env_runners", {})
-        steps, episodes = told.get("num_env_steps_sampled_lifetime", steps), episodes + told.get("num_episodes", 0)
-        returns = told.get("episode_return_mean", returns)
+        report = algorithm.train().get("env_runners", {})
+        steps, episodes = report.get("num_env_steps_sampled_lifetime", steps), episodes + report.get("num_episodes", 0)
+        returns = report.get("episode_return_mean", returns)
         print(type(algorithm).__name__, "steps", int(steps), "episodes", int(episodes), "return", returns, flush=True)
     assert np.isfinite(returns)
     algorithm.stop()

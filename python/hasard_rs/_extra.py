@@ -7,7 +7,7 @@ from typing import Any
 
 
 def need(library: str, extra: str, adapter: str) -> Any:
-    """Imports a library, or tells how to get it."""
+    """Imports a library, or says how to get it."""
     try:
         return importlib.import_module(library)
     except ImportError as missing:

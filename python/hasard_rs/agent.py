@@ -148,7 +148,7 @@ def _words(name: str, value: Any) -> list[str]:
 
 
 class Agent:
-    """A trained agent. `act` is a function of what it is given: what the agent remembers is handed in and out.
+    """A trained agent. `act` is a function of what it is given: what the agent remembers is passed in and returned.
 
         agent = Agent.load("runs/vv1")
         env = agent.make_vec(8)
@@ -190,12 +190,12 @@ class Agent:
     def arguments(self) -> dict[str, Any]:
         """Returns keyword arguments of environments like the one that the agent was trained in, its maps and pictures among them."""
         env = self.config["env"]
-        told = {name: env[name] for name in ("rules", "full_actions", "frame_skip", "observation", "frame_stack")}
-        told |= {"hard_constraint": env["hard"], "resolution": tuple(env["size"])}
+        arguments = {name: env[name] for name in ("rules", "full_actions", "frame_skip", "observation", "frame_stack")}
+        arguments |= {"hard_constraint": env["hard"], "resolution": tuple(env["size"])}
         # The attribute that wrappers such as `Saute` go by is what the agent was trained for.
         scalar = [one["budget"] for one in self.config["constraints"] if one.get("term") is None]
-        told |= {"safety_budget": scalar[0]} if scalar else {}
-        return told | {name: env[name] for name in ("early_creatures", "published_depth", "published_colours", "maps", "iwad") if env.get(name) is not None}
+        arguments |= {"safety_budget": scalar[0]} if scalar else {}
+        return arguments | {name: env[name] for name in ("early_creatures", "published_depth", "published_colours", "maps", "iwad") if env.get(name) is not None}
 
     def make(self, **arguments: Any) -> Any:
         """Returns a single environment like the one that the agent was trained in; `arguments` (see `help(hasard_rs.Env)`, by
@@ -238,7 +238,7 @@ class Agent:
             "buttons" and "deltas" (float32 [n, 2] in [-1, 1]).
 
         Raises:
-            ValueError for observations of another shape, or cost terms that `after` was not told.
+            ValueError for observations of another shape, or cost terms that `after` was not given.
         """
         single = observations.ndim == 3
         observations = observations[None] if single else observations
@@ -290,8 +290,8 @@ class Agent:
         if not is_number(episodes) or int(episodes) < 1:
             raise InvalidOption(f"episodes cannot be {episodes!r}; it must be 1 or more")
         first = check_seed(seed)
-        told: list[dict[str, Any]] = json.loads(self._trained.evaluate([(first + number) % 2**64 for number in range(int(episodes))]))
-        return told
+        rows: list[dict[str, Any]] = json.loads(self._trained.evaluate([(first + number) % 2**64 for number in range(int(episodes))]))
+        return rows
 
     def report(self, out: str | os.PathLike[str]) -> Path:
         """Writes the run's page of tables and curves into the folder `out`, as `hasard report` does. Returns the folder; raises HasardError."""

@@ -31,10 +31,10 @@ def jobs(words: list[str]) -> list[dict[str, Any]]:
         ValueError, with the program's line of what went wrong.
     """
     asked = [sys.executable, "-m", "hasard_rs.cli", *words, "--dry-run"]
-    told = subprocess.run([*asked, *([] if "--json" in words else ["--json"])], capture_output=True, text=True, check=False)
-    if told.returncode:
-        raise ValueError(told.stderr.strip())
-    return [json.loads(line) for line in told.stdout.splitlines()]
+    done = subprocess.run([*asked, *([] if "--json" in words else ["--json"])], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise ValueError(done.stderr.strip())
+    return [json.loads(line) for line in done.stdout.splitlines()]
 
 
 def run_job(job: dict[str, Any]) -> tuple[int, str]:

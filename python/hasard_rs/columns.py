@@ -46,21 +46,21 @@ def cut(infos: Infos, rows: slice) -> Infos:
 
 def replaced(infos: Infos, others: Infos, mask: np.ndarray) -> Infos:
     """Returns `infos` with the rows of `others` where the mask is. What only `infos` have, such as how an episode ended, is not true of those rows."""
-    told: Infos = {}
+    result: Infos = {}
     for key, column in infos.items():
         if key.startswith("_"):
             continue
         if key not in others:
             kept = infos[f"_{key}"] & ~mask
             if kept.any():
-                told[key], told[f"_{key}"] = _hidden(column, mask), kept
+                result[key], result[f"_{key}"] = _hidden(column, mask), kept
             continue
         if isinstance(column, dict):
-            told[key] = replaced(column, others[key], mask)
+            result[key] = replaced(column, others[key], mask)
         else:
-            told[key] = np.where(mask.reshape(-1, *[1] * (column.ndim - 1)), others[key], column)
-        told[f"_{key}"] = infos[f"_{key}"] | mask
-    return told
+            result[key] = np.where(mask.reshape(-1, *[1] * (column.ndim - 1)), others[key], column)
+        result[f"_{key}"] = infos[f"_{key}"] | mask
+    return result
 
 
 def _hidden(column: Any, mask: np.ndarray) -> Any:

@@ -187,7 +187,7 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
 
     @property
     def game(self) -> Any:
-        """The published package's engine, which is not here: raises AttributeError, which tells what there is instead."""
+        """The published package's engine, which is not here: raises AttributeError, which says what there is instead."""
         raise AttributeError("there is no ViZDoom here; see env.save, env.picture, info['env_stats']")
 
     def close(self) -> None:

@@ -16,7 +16,7 @@ class Infos:
         worlds: whose.
         scenario: its name.
         infos: "cost", "full" or "events".
-        env_stats: whether the statistics of every step are told.
+        env_stats: whether the statistics of every step are reported.
     """
 
     def __init__(self, worlds: Any, scenario: str, infos: str, env_stats: bool) -> None:
@@ -71,7 +71,7 @@ class Infos:
         return columns
 
     def now(self, lane: int) -> dict[str, Any]:
-        """Returns the info of a lane whose episode has just begun, where the batch tells the one that ended."""
+        """Returns the info of a lane whose episode has just begun, where the batch shows the one that ended."""
         info: dict[str, Any] = {}
         if self.full:
             info = {"position": self.worlds.positions[lane], "episode_seed": self.worlds.episode_seeds[lane]}
@@ -100,8 +100,8 @@ def row(columns: dict[str, Any], index: int) -> dict[str, Any]:
 
 def summary(episode: dict[str, Any]) -> dict[str, Any]:
     """Returns what is known of an episode that ended: its seed as uint64, like `episode_seed`, since no float holds every seed; the rest floats."""
-    told: dict[str, Any] = {name: float(episode[name]) for name in ("return", "cost", "length")}
-    told["seed"] = np.uint64(episode["seed"])
-    told |= {name: float(episode[name]) for name in ("terminated", "truncated")}
-    told |= {f"cost_{name}": float(value) for name, value in episode["costs"].items()}
-    return told | {name: float(value) for name, value in episode["statistics"].items()}
+    info: dict[str, Any] = {name: float(episode[name]) for name in ("return", "cost", "length")}
+    info["seed"] = np.uint64(episode["seed"])
+    info |= {name: float(episode[name]) for name in ("terminated", "truncated")}
+    info |= {f"cost_{name}": float(value) for name, value in episode["costs"].items()}
+    return info | {name: float(value) for name, value in episode["statistics"].items()}

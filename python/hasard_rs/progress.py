@@ -1,4 +1,4 @@
-"""A line that tells how far a training is."""
+"""A line that shows how far a training is."""
 
 from __future__ import annotations
 

@@ -45,9 +45,9 @@ class DoomEnv(Env):
 
     def step(self, action: Any) -> Any:
         """Holds an action, a tuple of parts. Returns and raises what `Env.step` does; `info["env_stats"]` has the published names, floats."""
-        told = super().step(action)
-        self._statistics, self._cost = told[4]["env_stats"], float(told[4]["cost"])
-        return told
+        result = super().step(action)
+        self._statistics, self._cost = result[4]["env_stats"], float(result[4]["cost"])
+        return result
 
     def calculate_cost(self) -> float:
         """Returns the cost of the last step."""

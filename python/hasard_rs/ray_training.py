@@ -234,7 +234,7 @@ class _Driver:
         while True:
             try:
                 done, going = ray.wait(going, num_returns=1, timeout=0.2)
-                self._tell(ray.get(meeting.news.remote(self.stop)))
+                self._report(ray.get(meeting.news.remote(self.stop)))
             except KeyboardInterrupt as interrupt:
                 # The run ends with a checkpoint; then this is raised again.
                 self.stop, self.raised, done = True, interrupt, []
@@ -244,7 +244,7 @@ class _Driver:
                 # Raises what went wrong there; a worker that ends well does so because the first one does.
                 ray.get(one)
 
-    def _tell(self, reports: list[Report]) -> None:
+    def _report(self, reports: list[Report]) -> None:
         for report in reports:
             self.heard = True
             if self.callback is None or self.stop:

@@ -93,18 +93,18 @@ def spec(env_id: str) -> Spec:
     """
     if is_file(env_id):
         env_id = opened(env_id)
-    told = _core.describe(bare(env_id))
+    known = _core.describe(bare(env_id))
     return Spec(
-        id=f"hasard/{told['id']}",
-        scenario=told["scenario"],
-        level=told["level"],
+        id=f"hasard/{known['id']}",
+        scenario=known["scenario"],
+        level=known["level"],
         rules="paper",
-        cost_terms=tuple(CostTerm(name, counted) for name, counted in told["cost_terms"]),
-        safety_budget=told["safety_budget"],
-        nvec=tuple(told["nvec"]),
-        buttons=tuple(tuple(names) for names in told["buttons"]),
-        max_episode_steps=told["max_episode_steps"],
-        published_safety_budget=told["published_safety_budget"],
+        cost_terms=tuple(CostTerm(name, counted) for name, counted in known["cost_terms"]),
+        safety_budget=known["safety_budget"],
+        nvec=tuple(known["nvec"]),
+        buttons=tuple(tuple(names) for names in known["buttons"]),
+        max_episode_steps=known["max_episode_steps"],
+        published_safety_budget=known["published_safety_budget"],
     )
 
 

@@ -69,8 +69,8 @@ class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
         batch = self.worlds.step(rows[:, :groups].astype(np.int64), deltas)
         infos: list[dict[str, Any]] = [{"cost": cost, "num_frames": self.frame_skip} for cost in batch.costs.tolist()]
         for episode in batch.episodes:
-            told = summary(episode)
-            infos[episode["lane"]]["episode_extra_stats"] = {name: value for name, value in told.items() if name != "seed"}
+            stats = summary(episode)
+            infos[episode["lane"]]["episode_extra_stats"] = {name: value for name, value in stats.items() if name != "seed"}
         ends = torch.from_numpy(batch.terminated), torch.from_numpy(batch.truncated)
         return {"obs": torch.from_numpy(batch.observations)}, torch.from_numpy(batch.rewards), *ends, infos
 

@@ -66,7 +66,7 @@ class HasardVectorEnv:
                 each[lane] = seed
             seeds = each
         batch = self.worlds.reset(seeds, None if mask.all() else mask)
-        return batch.observations[lanes], self._told(batch, lanes, lanes)
+        return batch.observations[lanes], self._info_rows(batch, lanes, lanes)
 
     def step(self, action: Any, id: Any = None) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # noqa: A002
         """Steps lanes.
@@ -83,12 +83,12 @@ class HasardVectorEnv:
         """
         lanes = self._lanes(id)
         batch = self.worlds.step(*self._format.many(np.asarray(action), len(lanes)), lanes=lanes.tolist())
-        infos = self._told(batch, np.arange(len(lanes)), lanes)
+        infos = self._info_rows(batch, np.arange(len(lanes)), lanes)
         for episode in batch.episodes:
             infos[int(np.flatnonzero(lanes == episode["lane"])[0])]["episode_summary"] = summary(episode)
         return batch.observations, batch.rewards.astype(np.float64), batch.terminated, batch.truncated, infos
 
-    def _told(self, batch: Any, rows: np.ndarray, lanes: np.ndarray) -> np.ndarray:
+    def _info_rows(self, batch: Any, rows: np.ndarray, lanes: np.ndarray) -> np.ndarray:
         columns = self._infos.step(batch)
         infos = np.empty(len(lanes), dtype=object)
         for i, (index, lane) in enumerate(zip(rows, lanes, strict=True)):

@@ -31,10 +31,10 @@ def read_weights(path: Path) -> dict[str, np.ndarray]:
     header = json.loads(data[8 : 8 + length])
     body, kinds = data[8 + length :], {"F32": np.float32, "F64": np.float64, "U64": np.uint64, "U8": np.uint8}
     tensors = {}
-    for name, told in header.items():
+    for name, entry in header.items():
         if name != "__metadata__":
-            start, end = told["data_offsets"]
-            tensors[name] = np.frombuffer(body[start:end], kinds[told["dtype"]]).reshape(told["shape"]).copy()
+            start, end = entry["data_offsets"]
+            tensors[name] = np.frombuffer(body[start:end], kinds[entry["dtype"]]).reshape(entry["shape"]).copy()
     return tensors
 
 
@@ -61,8 +61,8 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
 
         self.convolutions, self.stages = torch.nn.ModuleList(), torch.nn.ModuleList()
         stages = settings.get("residual", [])
-        for index, told in enumerate([] if stages else settings["convolutions"]):
-            self.convolutions.append(convolution(f"convolution{index}", told["stride"], 0))
+        for index, layer in enumerate([] if stages else settings["convolutions"]):
+            self.convolutions.append(convolution(f"convolution{index}", layer["stride"], 0))
         for stage in range(len(stages)):
             names = ["convolution", *(f"block{block}.convolution{index}" for block in range(2) for index in range(2))]
             self.stages.append(torch.nn.ModuleList(convolution(f"stage{stage}.{name}", 1, 1) for name in names))
@@ -146,8 +146,8 @@ class Model(torch.nn.Module):  # type: ignore[name-defined,misc]
         pixels = (observations.reshape(count, -1).float() * self.scale + self.shift).clamp(-5.0, 5.0)
         images = pixels.reshape(count, *shape).permute(0, 3, 1, 2)
         states = [None] * len(self.networks) if state is None else state
-        told = [network(images, extra, own) for network, own in zip(self.networks, states, strict=True)]
-        return torch.cat([outputs for outputs, _ in told], 1), [after for _, after in told]
+        results = [network(images, extra, own) for network, own in zip(self.networks, states, strict=True)]
+        return torch.cat([outputs for outputs, _ in results], 1), [after for _, after in results]
 
 
 def load(run: str | os.PathLike[str], *, best: bool = False) -> Model:

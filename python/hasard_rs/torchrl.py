@@ -54,7 +54,7 @@ class HasardEnv(EnvBase):
         self.done_spec = Composite(done=flag, terminated=flag.clone(), truncated=flag.clone(), shape=(n,))
         self._seed: int | None = given.seed
 
-    def _told(self, batch: Any) -> dict[str, Any]:
+    def _as_tensors(self, batch: Any) -> dict[str, Any]:
         terminated = torch.from_numpy(batch.terminated)[:, None]
         truncated = torch.from_numpy(batch.truncated)[:, None]
         return {
@@ -72,12 +72,12 @@ class HasardEnv(EnvBase):
             mask = tensordict["_reset"].reshape(-1).cpu().numpy().astype(np.bool_)
         seed, self._seed = self._seed, None
         batch = self.worlds.reset(seed, None if mask is None or mask.all() else mask)
-        return TensorDict(self._told(batch), batch_size=self.batch_size, device=self.device)
+        return TensorDict(self._as_tensors(batch), batch_size=self.batch_size, device=self.device)
 
     def _step(self, tensordict: Any) -> Any:
         batch = self.worlds.step(tensordict["action"].cpu().numpy())
-        told = {**self._told(batch), "reward": torch.from_numpy(batch.rewards)[:, None]}
-        return TensorDict(told, batch_size=self.batch_size, device=self.device)
+        tensors = {**self._as_tensors(batch), "reward": torch.from_numpy(batch.rewards)[:, None]}
+        return TensorDict(tensors, batch_size=self.batch_size, device=self.device)
 
     def _set_seed(self, seed: int | None) -> None:
         self._seed = seed

@@ -15,7 +15,7 @@ class Turns:
 
     Args:
         groups: their number.
-        due: groups that were handed out and wait for actions, the one that has waited longest first.
+        due: groups that were returned to the caller and wait for actions, the one that has waited longest first.
         under_way: groups whose actions were sent.
         back: what `recv` gives of a group without waiting: first observations, or a step that had to be waited for.
         coming: the group that `recv` gives next, round robin.
@@ -28,18 +28,18 @@ class Turns:
     coming: int = 0
 
     def restart(self, back: dict[int, Result], first: int) -> Result:
-        """Has groups begin again, with what is `back` of all but those under way. Returns the `first` one's, which is handed out."""
+        """Has groups begin again, with what is `back` of all but those under way. Returns the result of the `first`, which is due then."""
         self.back = {**self.back, **back}
         self.due, self.coming = [], first
         return self.take()
 
     def take(self) -> Result:
-        """Hands the coming group out, which is back. Returns its result."""
+        """Returns the result of the coming group, which is back and is due then."""
         result = self.back.pop(self.coming)
-        self.hand_out()
+        self.mark_returned()
         return result
 
-    def hand_out(self) -> None:
-        """Notes that the coming group was handed out."""
+    def mark_returned(self) -> None:
+        """Notes that the coming group was returned to the caller."""
         self.due.append(self.coming)
         self.coming = (self.coming + 1) % self.groups

@@ -108,7 +108,7 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         self.action_space = batch_space(self.single_action_space, self.batch_size)
         self._describe(autoreset_mode=self.autoreset_mode)
         if not copy:
-            self._lend()
+            self._bind()
 
     @property
     def tasks(self) -> tuple[str, ...]:
@@ -130,7 +130,7 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         """The raw worlds below."""
         return self._worlds
 
-    def _lend(self) -> None:
+    def _bind(self) -> None:
         """Results go to the same arrays in every step."""
         n = self.num_envs
         self._worlds.bind(
@@ -152,7 +152,7 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
 
         Returns:
             Observations, uint8 [num_envs, ...], and infos: arrays float64, int32, uint64 with first axis num_envs, and for each key a mask
-            bool [num_envs] under "_key". With `batch_size`: of the first group, or, with a mask, of the group that was handed out and waits
+            bool [num_envs] under "_key". With `batch_size`: of the first group, or, with a mask, of the group that has waited longest
             for actions; the others come by `recv`.
 
             Steps under way are given up with their episodes. A mask gives none up: `recv` brings them, lanes that were reset with their first
@@ -187,11 +187,11 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
             turns.due = [0]
             return batch.observations, infos
         rests = {group: self._at_rest(batch, infos, group) for group in range(self._groups)}
-        # What was handed out is handed out again; what waits to be fetched keeps its rewards.
-        back = {group: self._with_resets(told, rests[group], chosen[self._lanes(group)]) for group, told in turns.back.items()}
+        # What was returned is returned again; what waits to be fetched keeps its rewards.
+        back = {group: self._with_resets(result, rests[group], chosen[self._lanes(group)]) for group, result in turns.back.items()}
         first = 0 if chosen.all() else turns.due[0]
-        observations, *_, told = turns.restart({**rests, **back}, first)
-        return observations, told
+        observations, *_, infos = turns.restart({**rests, **back}, first)
+        return observations, infos
 
     def _seeds(self, seed: Any) -> Any:
         if seed is None:
@@ -247,13 +247,13 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
             return self.recv()
         if not self._turns.due and self._worlds.started:
             raise OutOfTurn("a step is under way; call recv first")
-        return self._tell(self._worlds.step(*self._format.many(actions, self.num_envs)))
+        return self._result(self._worlds.step(*self._format.many(actions, self.num_envs)))
 
     def send(self, actions: Any) -> None:
         """Hands over actions and comes back at once.
 
         Args:
-            actions: for batch_size lanes, as for `step`: those that have waited longest since `reset`, `step` or `recv` handed them out.
+            actions: for batch_size lanes, as for `step`: those that have waited longest since `reset`, `step` or `recv` returned them.
 
         Raises:
             What `step` raises; OutOfTurn if no lanes wait for actions.
@@ -283,16 +283,16 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         if turns.coming not in turns.under_way and turns.due and not self._worlds.closed:
             lanes = self._lanes(turns.coming)
             raise OutOfTurn(f"lanes {lanes.start}..={lanes.stop - 1} wait for actions; send them first")
-        told = self._tell(self._worlds.recv(turns.coming))
+        result = self._result(self._worlds.recv(turns.coming))
         turns.under_way.discard(turns.coming)
-        turns.hand_out()
-        return told
+        turns.mark_returned()
+        return result
 
     def _wait(self) -> None:
         """Waits for all that is under way, and keeps it for `recv`."""
         for group in sorted(self._turns.under_way):
             # A copy: with `copy=False` the next call writes over it.
-            self._turns.back[group] = copy.deepcopy(self._tell(self._worlds.recv(group)))
+            self._turns.back[group] = copy.deepcopy(self._result(self._worlds.recv(group)))
             self._turns.under_way.discard(group)
 
     def _lanes(self, group: int) -> slice:
@@ -302,19 +302,19 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         """A group as it is, without a step."""
         own = self._lanes(group)
         nothing = np.zeros(self.batch_size, np.bool_)
-        told = {**_columns.cut(infos, own), **self._env_ids(batch.lanes[own])}
-        return batch.observations[own].copy(), np.zeros(self.batch_size), nothing, nothing.copy(), told
+        group_infos = {**_columns.cut(infos, own), **self._env_ids(batch.lanes[own])}
+        return batch.observations[own].copy(), np.zeros(self.batch_size), nothing, nothing.copy(), group_infos
 
-    def _with_resets(self, told: Result, rest: Result, mask: np.ndarray) -> Result:
+    def _with_resets(self, result: Result, rest: Result, mask: np.ndarray) -> Result:
         """A group's step that was not fetched yet, with first observations where lanes were reset since."""
-        observations, rewards, terminated, truncated, infos = told
+        observations, rewards, terminated, truncated, infos = result
         observations[mask] = rest[0][mask]
         return observations, np.where(mask, 0.0, rewards), terminated & ~mask, truncated & ~mask, _columns.replaced(infos, rest[4], mask)
 
     def _env_ids(self, lanes: np.ndarray) -> dict[str, np.ndarray]:
         return {"env_id": lanes, "_env_id": np.ones(len(lanes), np.bool_)} if self._groups > 1 else {}
 
-    def _tell(self, batch: Batch) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+    def _result(self, batch: Batch) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         count = len(batch.lanes)
         everywhere = np.ones(count, np.bool_)
         if self._infos.env_stats:
@@ -331,18 +331,18 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         return batch.observations, batch.rewards.astype(np.float64), batch.terminated, batch.truncated, infos
 
     def _end(self, infos: dict[str, Any], columns: dict[str, Any], batch: Batch) -> None:
-        """Tells of the episodes that ended."""
+        """Adds what is known of the episodes that ended."""
         count, first = len(batch.lanes), int(batch.lanes[0])
         lasts = dict(zip(batch.final_lanes.tolist(), batch.final_observations, strict=True))
         for episode in batch.episodes:
             index = episode["lane"] - first
             ended = np.zeros(count, np.bool_)
             ended[index] = True
-            told = {"episode_summary": summary(episode)}
+            ending = {"episode_summary": summary(episode)}
             if not self._same_step:
-                _columns.add(infos, told, index, count)
+                _columns.add(infos, ending, index, count)
                 continue
-            final = {**row(columns, index), **told}
+            final = {**row(columns, index), **ending}
             if "episode_seed" in final:
                 final["episode_seed"] = np.uint64(episode["seed"])
             if "final_obs" not in infos:

@@ -21,7 +21,7 @@ def full(request: pytest.FixtureRequest) -> bool:
 
 
 def assert_same(a: Any, b: Any, where: str = "") -> None:
-    """Equal to the bit, types and dtypes too; tells the first place that differs."""
+    """Equal to the bit, types and dtypes too; names the first place that differs."""
     assert type(a) is type(b), f"{where}: {type(a)} and {type(b)}"
     if isinstance(a, dict):
         assert a.keys() == b.keys(), f"{where}: {sorted(a)} and {sorted(b)}"

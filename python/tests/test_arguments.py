@@ -154,9 +154,9 @@ def test_a_world_comes_back_from_json_and_pickle(name: str, level: Path) -> None
     copies = [pickle.loads(pickle.dumps(env)), copy.deepcopy(env)]
     action = env.action_space.sample()
     env.reset(), [other.reset() for other in copies]
-    told = env.step(action)
+    result = env.step(action)
     for other in copies:
-        assert_same(other.step(action), told)
+        assert_same(other.step(action), result)
 
 
 @pytest.mark.parametrize("name", {**VALUES, **BATCH})
@@ -169,8 +169,8 @@ def test_a_batch_comes_back_from_json_and_pickle(name: str, level: Path) -> None
     for other in (pickle.loads(pickle.dumps(envs)), copy.deepcopy(envs)):
         action = envs.action_space.sample()
         before = pickle.dumps(envs)
-        told = copy.deepcopy(envs.step(action))
-        assert_same(other.step(action), told)
+        result = copy.deepcopy(envs.step(action))
+        assert_same(other.step(action), result)
         envs = pickle.loads(before)
 
 
@@ -206,9 +206,9 @@ def test_names_that_contradict_each_other_are_refused(pair: dict[str, Any]) -> N
         lambda: hasard_rs.train(ENV, out="nowhere", **pair),
     ]
     for make in makes:
-        with pytest.raises(hasard_rs.InvalidOption, match="contradict each other") as told:
+        with pytest.raises(hasard_rs.InvalidOption, match="contradict each other") as raised:
             make()
-        assert all(f"{name}=" in str(told.value) for name in pair)
+        assert all(f"{name}=" in str(raised.value) for name in pair)
 
 
 def test_names_that_agree_are_taken() -> None:
@@ -221,14 +221,14 @@ def test_names_that_agree_are_taken() -> None:
 
 
 @pytest.mark.parametrize("wrong", [[64], [64, 48, 3], [64.0, 48.0], ["64", "48"], [[64], [48]], {"width": 64, "height": 48}, [10, 10], [1 << 40, 48]])
-def test_pairs_that_are_none_are_told(wrong: Any) -> None:
+def test_pairs_that_are_none_are_refused(wrong: Any) -> None:
     for name in ("resolution", "size", "render_resolution"):
         with pytest.raises(hasard_rs.InvalidOption, match=f"{name} cannot be .* it must be"):
             hasard_rs.make(ENV, **{name: wrong})
 
 
 @pytest.mark.parametrize("steps", [0, -2, "10", 2.5])
-def test_limits_that_are_none_are_told(steps: Any) -> None:
+def test_limits_that_are_none_are_refused(steps: Any) -> None:
     for make in (hasard_rs.make, hasard_rs.make_vec):
         with pytest.raises(hasard_rs.InvalidOption, match="max_episode_steps cannot be"):
             make(ENV, max_episode_steps=steps)
@@ -263,24 +263,24 @@ def test_a_seed_is_a_number_or_one_a_lane() -> None:
 def test_a_single_world_says_nothing_of_lanes() -> None:
     env = hasard_rs.Env(scenario="CollateralDamage", level=1, max_episode_steps=1, resolution="64x48", action_format="multi_discrete")
     env.reset(seed=1)
-    with pytest.raises(hasard_rs.InvalidAction) as told:
+    with pytest.raises(hasard_rs.InvalidAction) as raised:
         env.step([9, 0])
-    assert str(told.value) == "action: part 0 is 9; it must be 0..=2"
+    assert str(raised.value) == "action: part 0 is 9; it must be 0..=2"
     env.step([0, 0])
-    with pytest.raises(hasard_rs.ResetNeeded) as told:
+    with pytest.raises(hasard_rs.ResetNeeded) as raised:
         env.step([0, 0])
-    assert str(told.value) == "the episode is over; call reset before the next step"
+    assert str(raised.value) == "the episode is over; call reset before the next step"
     for action_format, wrong in (("discrete", 99), ("box", [np.nan, 0.0]), ("tuple", (5, 0)), ("dict", {"buttons": [5, 0]})):
         env = hasard_rs.Env(scenario="CollateralDamage", level=1, resolution="64x48", action_format=action_format)
         env.reset(seed=1)
-        with pytest.raises(hasard_rs.InvalidAction) as told:
+        with pytest.raises(hasard_rs.InvalidAction) as raised:
             env.step(wrong)
-        assert str(told.value).startswith("action: part 0 is "), action_format
+        assert str(raised.value).startswith("action: part 0 is "), action_format
     env = hasard_rs.Env(scenario="CollateralDamage", level=1, resolution="64x48", action_format="dict", full_actions=True)
     env.reset(seed=1)
-    with pytest.raises(hasard_rs.InvalidAction) as told:
+    with pytest.raises(hasard_rs.InvalidAction) as raised:
         env.step({"buttons": np.zeros(len(env._worlds.nvec), int), "deltas": [np.nan, 0.0]})
-    assert "lane" not in str(told.value)
+    assert "lane" not in str(raised.value)
 
 
 def test_one_part_may_come_in_a_column() -> None:

@@ -1,4 +1,4 @@
-"""Sweeps on clusters, as far as one machine without Ray and Slurm can tell."""
+"""Sweeps on clusters, as far as one machine without Ray and Slurm can test them."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def command(directory: Path) -> str:
     return f"hasard train RemedyRushLevel1-v0 --preset quick --size 64x48 --envs 4 --threads 1 --frames 1000000000 --quiet --out {directory}"
 
 
-def test_what_cannot_be_begun_is_told_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_cannot_be_begun_is_said_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     for place, words, text in [("mars", ["sweep", "quick"], "give ray, ray:ADDRESS or slurm"), ("ray", ["sweep", "nothing"], "nothing")]:
         assert clusters.sweep_on(place, words) == 2
-        told = capsys.readouterr().err
-        assert text in told and told.count("\n") == 1
+        printed = capsys.readouterr().err
+        assert text in printed and printed.count("\n") == 1
 
 
 def test_jobs_are_the_programs() -> None:

@@ -38,8 +38,8 @@ def test_a_wrapper_makes_the_reward_of_events() -> None:
     for step in range(525):
         action = [step // 11 % 3, 1, 1, 0]
         _, reward, _, _, info = env.step(action)
-        _, expected, _, _, told = plain.step(action)
-        assert reward == expected and "events" not in told
+        _, expected, _, _, plain_info = plain.step(action)
+        assert reward == expected and "events" not in plain_info
         total += reward
         assert set(info["events"]["player"]) <= {0}
     assert total > 5

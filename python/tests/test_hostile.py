@@ -110,7 +110,7 @@ def test_unknown_ids_name_the_nearest() -> None:
             make("hasard/VulcanicVentureLevel1-v0")
 
 
-def test_what_is_no_id_is_told() -> None:
+def test_what_is_no_id_is_refused() -> None:
     for make in (hasard_rs.make, hasard_rs.make_vec, hasard_rs.spec, hasard_rs.train):
         for wrong in (None, 5, b"VolcanicVentureLevel1-v0"):
             with pytest.raises(TypeError, match="id must be a str"):

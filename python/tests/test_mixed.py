@@ -64,11 +64,11 @@ def test_lanes_play_their_own_tasks(ids: list[str]) -> None:
             # Turn, ahead, run, jump, attack; the garden has TURN_RIGHT alone, the second of the first.
             turn, ahead, run, jump, attack = actions.T
             chosen = np.stack([(turn, ahead, run, jump), (turn, attack), (turn == 2, ahead)][task], axis=1).astype(int)
-            seen, earned, *_, told = one.step(chosen)
+            seen, earned, *_, own_infos = one.step(chosen)
             lanes = [task, task + 3]
             assert np.array_equal(observations[lanes], seen[lanes])
             assert rewards[lanes].tolist() == earned[lanes].tolist()
-            assert infos["cost"][lanes].tolist() == told["cost"][lanes].tolist()
+            assert infos["cost"][lanes].tolist() == own_infos["cost"][lanes].tolist()
         sums += [rewards, infos["cost"]]
     assert (sums[0].reshape(2, 3).sum(axis=0) != 0).all()
     assert infos["env_stats"]["vials"][[0, 1, 3, 4]].tolist() == [0.0] * 4

@@ -134,11 +134,11 @@ def test_threads_width_and_groups_change_nothing(mode: str) -> None:
         for found, wanted in zip(narrow.step(script[step][:4])[:4], expected[:4], strict=True):
             assert np.array_equal(found, wanted[:4])
         for half in (slice(0, 4), slice(4, 8)):
-            told = grouped.recv()
-            for found, wanted in zip(told[:4], expected[:4], strict=True):
+            result = grouped.recv()
+            for found, wanted in zip(result[:4], expected[:4], strict=True):
                 assert np.array_equal(found, wanted[half])
-            assert np.array_equal(told[4]["cost"], expected[4]["cost"][half])
-            assert told[4]["env_id"].tolist() == list(range(half.start, half.stop))
+            assert np.array_equal(result[4]["cost"], expected[4]["cost"][half])
+            assert result[4]["env_id"].tolist() == list(range(half.start, half.stop))
             grouped.send(script[step + 1][half])
 
 

@@ -1,4 +1,4 @@
-"""The line that tells how far a training is."""
+"""The line that shows how far a training is."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def test_what_is_loaded_is_what_plays(tmp_path: Path) -> None:
     first = hasard_rs.Agent.load(run.directory)
     greedy = hasard_rs.Agent.load(run.directory, greedy=True)
     drawn, likeliest = first.evaluate(1, seed=4), greedy.evaluate(1, seed=4)
-    assert drawn != likeliest, "the test tells them apart"
+    assert drawn != likeliest, "the test distinguishes them"
     assert first.evaluate(1, seed=4, greedy=True) == likeliest and greedy.evaluate(1, seed=4, greedy=False) == drawn
     words = [sys.executable, "-m", "hasard_rs.cli", "eval", str(run.directory), "--episodes", "1", "--seed", "4", "--json", "--latest", "--greedy"]
     done = subprocess.run(words, capture_output=True, text=True)
@@ -129,9 +129,9 @@ def test_flags_are_the_programs(given: dict, words: list[str]) -> None:
 
 def test_a_setting_is_given_once() -> None:
     for wrong in ({"algo": "PPOLag"}, {"hard": True, "hard_constraint": False}, {"size": "64x48", "resolution": (72, 48)}, {"map": "a", "maps": "b"}):
-        with pytest.raises(hasard_rs.InvalidOption) as told:
+        with pytest.raises(hasard_rs.InvalidOption) as raised:
             training_words(ENV, "PPO", **wrong)
-        assert all(f"{name}=" in str(told.value) for name in wrong)
+        assert all(f"{name}=" in str(raised.value) for name in wrong)
     with pytest.raises(hasard_rs.InvalidOption, match="'-1' for '--seed"):
         hasard_rs.train(ENV, out="nowhere", seed=-1)
 
@@ -155,7 +155,7 @@ def test_agents_are_functions_of_what_they_are_given(run: hasard_rs.Run) -> None
         hasard_rs.Agent.load("nowhere")
 
 
-def test_agents_that_watch_a_named_term_are_told_of_it(tmp_path: Path) -> None:
+def test_agents_that_watch_a_named_term_are_given_it(tmp_path: Path) -> None:
     settings = {**SMALL, "safety_budget": "harmful_items=5"}
     run = hasard_rs.train(ENV, "PPOSaute", out=tmp_path / "run", callback=lambda report: True, **settings)
     agent = hasard_rs.Agent.load(run.directory)
@@ -167,7 +167,7 @@ def test_agents_that_watch_a_named_term_are_told_of_it(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="give cost_terms too"):
         agent.act(observations, agent.after(state, infos["cost"], over))
     terms = infos["cost_terms"]
-    rows = [agent.act(observations, agent.after(state, infos["cost"], over, told))[1].memory for told in (terms, terms + 4.0)]
+    rows = [agent.act(observations, agent.after(state, infos["cost"], over, given))[1].memory for given in (terms, terms + 4.0)]
     spent, more = (agent._trained.outputs(observations, memory)[0] for memory in rows)
     assert not np.array_equal(spent, more), "what the term costs is seen"
 

@@ -47,18 +47,18 @@ class Model:
             return "Closed"
         return getattr(self, call)(actions, mask)
 
-    def hand_out(self, result: Any) -> Any:
+    def returned(self, result: Any) -> Any:
         self.due.append(self.coming)
         self.coming = (self.coming + 1) % self.groups
         return result
 
     def begin(self, seed: int | None) -> Any:
-        """All begin anew; the first group is handed out, the others wait to be fetched."""
+        """All begin anew; the first group is returned, the others wait to be fetched."""
         for group, worlds in enumerate(self.worlds):
             worlds.reset(None if seed is None else [seed + group * LANES + lane for lane in range(LANES)])
         self.begun, self.due, self.coming = True, [], 0
         self.waiting = {group: rest(group, worlds) for group, worlds in enumerate(self.worlds)}
-        return self.hand_out(self.waiting.pop(0))
+        return self.returned(self.waiting.pop(0))
 
     def reset(self, actions: Any, mask: Any) -> Any:
         return self.begin(None if self.begun else SEED)
@@ -85,7 +85,7 @@ class Model:
             observations[own] = rest(group, worlds)[1][own]
             self.waiting[group] = (group, observations, np.where(own, 0, rewards), np.where(own, 0, costs), flags & ~own)
         self.due, self.coming = [], first
-        return self.hand_out(self.waiting.pop(first))
+        return self.returned(self.waiting.pop(first))
 
     def send(self, actions: Any, mask: Any) -> Any:
         if not self.begun:
@@ -104,7 +104,7 @@ class Model:
     def recv(self, actions: Any, mask: Any) -> Any:
         if self.coming not in self.waiting:
             return "OutOfTurn"
-        return self.hand_out(self.waiting.pop(self.coming))
+        return self.returned(self.waiting.pop(self.coming))
 
     def step(self, actions: Any, mask: Any) -> Any:
         sent = self.send(actions, mask)
@@ -130,16 +130,16 @@ def done(envs: hasard_rs.VectorEnv, call: str, actions: Any, mask: Any) -> Any:
         "close": envs.close,
     }
     try:
-        told = calls[call]()
+        result = calls[call]()
     except hasard_rs.HasardError as error:
         return type(error).__name__
-    if told is None:
+    if result is None:
         return None
-    infos = told[-1]
+    infos = result[-1]
     group = int(infos["env_id"][0]) // LANES if "env_id" in infos else 0
     nothing = np.zeros(LANES)
-    rewards, flags = (told[1], told[2] | told[3]) if len(told) == 5 else (nothing, nothing.astype(bool))
-    return group, told[0], rewards, infos["cost"], flags
+    rewards, flags = (result[1], result[2] | result[3]) if len(result) == 5 else (nothing, nothing.astype(bool))
+    return group, result[0], rewards, infos["cost"], flags
 
 
 def compare(found: Any, wanted: Any, where: str) -> None:
@@ -215,13 +215,13 @@ def test_what_is_under_way_is_not_forgotten_by_others() -> None:
     envs.step(actions)
 
 
-def test_ends_are_told_of_the_lanes_that_were_not_reset() -> None:
+def test_ends_are_reported_for_the_lanes_that_were_not_reset() -> None:
     envs = hasard_rs.make_vec(ENV, 4, **HOW, batch_size=2, autoreset_mode="SameStep", infos="full")
     envs.reset(seed=2)
     actions = np.ones((2, 2), int)
     for _ in range(3):
         envs.step(actions)
-    # Group 1's second step, the last of its episodes, is under way now, and group 0 was handed out.
+    # Group 1's second step, the last of its episodes, is under way now, and group 0 was returned.
     envs.step(actions)
     observations, infos = envs.reset(options={"reset_mask": np.array([False, False, True, False])})
     assert infos["env_id"].tolist() == [0, 1] and not infos["_cost"].any()

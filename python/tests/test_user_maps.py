@@ -31,7 +31,7 @@ def package(tmp_path: Path) -> Path:
 
 
 def seen(env: Any) -> bytes:
-    """The first picture of an episode, which tells maps apart."""
+    """The first picture of an episode, which distinguishes maps."""
     picture = env.reset(seed=3)[0].tobytes()
     env.close()
     return picture

@@ -31,31 +31,31 @@ WRAPPERS: dict[str, Callable[[Any], Any]] = {
 
 
 def outcome(env: Any, wrap: Callable[[Any], Any], mode: AutoresetMode) -> list[Any]:
-    """Everything that a wrapped environment tells in two episodes, or what was raised."""
+    """Everything that a wrapped environment returns in two episodes, or what was raised."""
     try:
         wrapped = wrap(env)
-        told: list[Any] = [wrapped.reset(seed=4)]
+        results: list[Any] = [wrapped.reset(seed=4)]
         wrapped.action_space.seed(2)
         for _ in range(14):
-            # A copy: some wrappers write over what they told.
-            told.append(copy.deepcopy(wrapped.step(wrapped.action_space.sample())))
-            if mode == AutoresetMode.DISABLED and (over := told[-1][2] | told[-1][3]).any():
-                told.append(wrapped.reset(options={"reset_mask": over}))
+            # A copy: some wrappers write over what they returned.
+            results.append(copy.deepcopy(wrapped.step(wrapped.action_space.sample())))
+            if mode == AutoresetMode.DISABLED and (over := results[-1][2] | results[-1][3]).any():
+                results.append(wrapped.reset(options={"reset_mask": over}))
     except Exception as error:  # noqa: BLE001
         return [type(error), str(error).replace("SyncVectorEnv", "VectorEnv")]
-    return told
+    return results
 
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("name", WRAPPERS)
-def test_the_same_is_told(name: str, mode: AutoresetMode) -> None:
+def test_the_same_is_returned(name: str, mode: AutoresetMode) -> None:
     arguments = {"resolution": "64x48", "max_episode_steps": 6, "frame_skip": 20, "action_format": "box" if name.endswith("Action") else "multi_discrete"}
     native, sync = pair("hasard/VolcanicVentureLevel1-v0", mode, 2, **arguments)
     found, expected = outcome(native, WRAPPERS[name], mode), outcome(sync, WRAPPERS[name], mode)
     assert len(found) == len(expected), (found[:2], expected[:2])
     if name == "RecordEpisodeStatistics" and mode == AutoresetMode.DISABLED:
         # SyncVectorEnv takes the mask out of the caller's dict, so that this wrapper does not see it and counts on; ours leaves it there.
-        lengths = [told[4]["episode"]["l"].tolist() for told in found if len(told) == 5 and "episode" in told[4]]
+        lengths = [step[4]["episode"]["l"].tolist() for step in found if len(step) == 5 and "episode" in step[4]]
         assert lengths == [[6, 6], [6, 6]]
         found, expected = found[:7], expected[:7]
     for step, (one, other) in enumerate(zip(found, expected, strict=True)):

@@ -53,8 +53,8 @@ def test_six_tuples() -> None:
     vec = safety.SafetyVectorEnv(ENV, 2, resolution="64x48", max_episode_steps=5)
     vec.reset(seed=0)
     for _ in range(5):
-        told = vec.step(np.zeros((2, 4), int))
-    assert told[4].all() and told[5]["_final_observation"].all() and told[5]["final_observation"][0].shape == (48, 64, 3)
+        result = vec.step(np.zeros((2, 4), int))
+    assert result[4].all() and result[5]["_final_observation"].all() and result[5]["final_observation"][0].shape == (48, 64, 3)
 
 
 def test_wrappers_count_costs() -> None:
@@ -89,8 +89,8 @@ def test_tianshous_way_of_stepping_some_lanes() -> None:
     observations, infos = envs.reset(seed=3)
     assert observations.shape == (4, 3, 48, 64) and [info["env_id"] for info in infos] == [0, 1, 2, 3]
     for _ in range(6):
-        told = envs.step(np.zeros(2, int), [3, 1])
-    assert told[3].all() and [info["env_id"] for info in told[4]] == [3, 1] and "episode_summary" in told[4][0]
+        result = envs.step(np.zeros(2, int), [3, 1])
+    assert result[3].all() and [info["env_id"] for info in result[4]] == [3, 1] and "episode_summary" in result[4][0]
     envs.reset([3, 1])
     assert len(envs.step(np.zeros(4, int))[0]) == len(envs) == 4
 

@@ -1,4 +1,4 @@
-"""The raw layer: memory that is lent, lanes that are chosen, states that are saved, and processes that fork."""
+"""The raw layer: external memory, lanes that are chosen, states that are saved, and processes that fork."""
 
 from __future__ import annotations
 
@@ -117,11 +117,11 @@ def test_a_saved_moment_brings_everything_back(mode: str | None) -> None:
         return env
 
     def moved(env: Any, action: Any) -> Any:
-        told = env.step(action)
-        over = told[2] | told[3]
+        result = env.step(action)
+        over = result[2] | result[3]
         if mode == "Disabled" and np.any(over):
-            return told, env.reset(options={"reset_mask": over})
-        return (told, env.reset()) if mode is None and over else (told,)
+            return result, env.reset(options={"reset_mask": over})
+        return (result, env.reset()) if mode is None and over else (result,)
 
     env, other = made(3), made(99)
     env.action_space.seed(1)
@@ -159,7 +159,7 @@ def test_the_seed_in_a_summary_repeats_the_episode(vector: bool) -> None:
         assert seed.dtype == np.uint64 and seed.tolist() == began.tolist()
 
 
-def test_lanes_and_groups_that_are_none_are_told_so() -> None:
+def test_lanes_and_groups_that_are_none_are_refused() -> None:
     made = Worlds(ENV, 4, groups=2, resolution="64x48", num_threads=0)
     made.reset(1)
     for wrong in (-1, 4, 1 << 70):
@@ -204,7 +204,7 @@ def test_a_thousand_pickles_and_constructions_leave_no_memory_behind() -> None:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_a_forked_child_is_told_and_does_not_hang() -> None:
+def test_a_forked_child_is_refused_and_does_not_hang() -> None:
     threaded, alone = (Worlds(ENV, 4, resolution="64x48", num_threads=t) for t in (2, 0))
     threaded.reset(0)
     alone.reset(0)

@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn the_stream_is_what_squares_and_faces_told() {
+    fn the_stream_is_what_squares_and_faces_showed() {
         let mut stream = Sfmt607::new(&[0, FIRST]);
         let bytes: Vec<u8> = (0..150).map(|_| stream.next() as u8).collect();
         // Where the face looked in tics 20, 40, 60 and 80 of Collateral Damage 1, after a first
@@ -205,14 +205,14 @@ mod tests {
     fn rockets_take_bytes_while_they_fly_and_the_face_takes_some_between() {
         let flight = |tic, tics| Flight { tic, place: [0.0; 3], velocity: [20.0, 0.0, 0.0], tics };
         let flights = vec![flight(85, Some(2)), flight(87, Some(0)), flight(89, None)];
-        let told = lots(FIRST, &moment(92, flights));
-        assert_eq!(told.iter().map(Vec::len).collect::<Vec<_>>(), [2, 0, 4]);
+        let drawn = lots(FIRST, &moment(92, flights));
+        assert_eq!(drawn.iter().map(Vec::len).collect::<Vec<_>>(), [2, 0, 4]);
         // Choices of the face in tics 1, 20, 40, 60 and 80 come first.
         let mut stream = Sfmt607::new(&[0, FIRST]);
         for _face in 0..5 {
             stream.next();
         }
-        for tic in told.iter().flatten() {
+        for tic in drawn.iter().flatten() {
             assert_eq!(*tic, Lots::of_tic(|| stream.next() as u8));
         }
     }

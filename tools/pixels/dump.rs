@@ -1,4 +1,4 @@
-//! What the published engine showed and told of chosen moments.
+//! What the published engine showed and reported of chosen moments.
 
 use crate::Any;
 use serde::Deserialize;
@@ -80,7 +80,7 @@ impl Level {
 }
 
 impl Moment {
-    /// A variable; what was not told is 0.
+    /// A variable; what was not reported is 0.
     pub fn value(&self, name: &str) -> f64 {
         self.variables.get(name).copied().unwrap_or(0.0)
     }

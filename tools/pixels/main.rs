@@ -10,17 +10,17 @@
 //! the published packages use, named in that file. `--out` writes a picture of every moment,
 //! theirs, ours and the difference beside one another; `--list` prints a line for every moment.
 //! Pixels are compared by what the published label says of them: 0 and 1 are the world, 255 the
-//! weapon, others things. What the published engine does not tell of a moment is found by trying.
+//! weapon, others things. What the published engine does not report of a moment is found by trying.
 //!
-//! Squares that rockets shed lie where the published engine's chance has them, if the scenes tell
+//! Squares that rockets shed lie where the published engine's chance has them, if the scenes say
 //! what that began with.
 
 mod chance;
 mod dump;
+mod hidden_state;
 mod pose;
 mod sheet;
 mod tally;
-mod untold;
 
 use dump::Level;
 use hasard_engine::render::{Buffers, class};
@@ -73,7 +73,7 @@ fn level(folder: &Path, out: Option<&Path>, list: bool) -> Any<Tallies> {
     for moment in &level.scenes {
         let theirs = dump::Pictures::read(folder, moment.number)?;
         let mut posed = stage.pose(&level, moment);
-        let guess = untold::find(&mut stage, &mut posed, &theirs, &level.scenario, moment);
+        let guess = hidden_state::find(&mut stage, &mut posed, &theirs, &level.scenario, moment);
         leave_trails(&mut posed.world, moment);
         stage.renderer.render(
             &mut stage.scratch,

@@ -1,4 +1,4 @@
-//! A world of ours as the published engine told a moment.
+//! A world of ours as the published engine reported a moment.
 
 use crate::dump::{Level, Moment};
 use crate::{Any, chance};
@@ -151,7 +151,7 @@ pub fn leave_trails(world: &mut World, moment: &Moment) {
         // animated.
         let begun = world.tic + flight.tic - 1 - moment.tic;
         let (id, sector) = (world.players[0].actor, world.map.sector_at(place[0], place[1]));
-        let mut trail = Trail::new(id, place, velocity, begun, sector, Chance::Told(lots.into()));
+        let mut trail = Trail::new(id, place, velocity, begun, sector, Chance::Given(lots.into()));
         trail.ended = flight.tics.map_or(Trail::FLYING, |tics| begun + tics);
         world.trails.push(trail);
     }

@@ -66,7 +66,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
     interrupt::behave(Manner::AtOnce);
     // `check` lists it among what it finds.
     if !matches!(cli.command, Command::Check(_)) {
-        hasard_envs::maps::tell_of_tasks(|left_out| note!("hasard: {left_out}"));
+        hasard_envs::maps::report_tasks_to(|left_out| note!("hasard: {left_out}"));
     }
     let outcome = match cli.command {
         Command::Envs(args) => commands::envs::run(&args),
@@ -101,8 +101,9 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
     code
 }
 
-/// Trains as `hasard train` with these words does, but tells the caller and not the terminal; as
-/// the first of a team whose others [`follow`]. Gives the run's directory and how it ended.
+/// Trains as `hasard train` with these words does, but reports to the caller and not the
+/// terminal; as the first of a team whose others [`follow`]. Gives the run's directory and how it
+/// ended.
 ///
 /// # Errors
 /// One line that names the input and the remedy.
@@ -193,15 +194,15 @@ pub fn environment_of_run(directory: &Path) -> Result<(String, EnvOptions), Stri
     ))
 }
 
-/// Otherwise usual options with maps and pictures as `--maps` and `--iwad` name them; `tell` hears
-/// what of a map is left out.
+/// Otherwise usual options with maps and pictures as `--maps` and `--iwad` name them; `report` is
+/// given what of a map is left out.
 ///
 /// # Errors
 /// One line that names the input and the remedy.
 pub fn looks(
     maps: Option<&Path>,
     iwad: Option<&Path>,
-    tell: fn(&str),
+    report: fn(&str),
 ) -> Result<EnvOptions, String> {
-    sources::looks_telling(maps, iwad, tell).map_err(Failure::line)
+    sources::looks_reporting(maps, iwad, report).map_err(Failure::line)
 }

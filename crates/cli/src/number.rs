@@ -66,10 +66,10 @@ pub fn env_id(text: &str) -> Result<String, String> {
     let plain = text.to_ascii_lowercase();
     let plain = plain.strip_prefix("hasard/").unwrap_or(&plain);
     let plain = plain.strip_suffix("-v0").unwrap_or(plain);
-    let meant = hasard_envs::EnvId::every()
+    let known = hasard_envs::EnvId::every()
         .map(|id| id.to_string())
         .find(|id| id.trim_end_matches("-v0").eq_ignore_ascii_case(plain));
-    Ok(meant.unwrap_or_else(|| text.to_string()))
+    Ok(known.unwrap_or_else(|| text.to_string()))
 }
 
 #[cfg(test)]

@@ -73,7 +73,7 @@ pub struct Log {
 impl Log {
     fn new() -> Log {
         let (reports, heard) = channel();
-        Log { reports: Some(reports), thread: Some(std::thread::spawn(move || tell(&heard))) }
+        Log { reports: Some(reports), thread: Some(std::thread::spawn(move || print(&heard))) }
     }
 
     fn show(&self, report: &Report) {
@@ -96,7 +96,7 @@ impl Drop for Log {
     }
 }
 
-fn tell(heard: &Receiver<Report>) {
+fn print(heard: &Receiver<Report>) {
     let mut due = Instant::now() + FIRST;
     let mut pace = Pace::default();
     // The latest report, and whether it was printed.

@@ -13,14 +13,14 @@ const LARGEST_IWAD: u64 = 256 << 20;
 /// Otherwise usual options with the maps of `--maps` and the pictures of `--iwad`; without them the
 /// built-in ones. What of a map is left out is written to the terminal.
 pub fn looks(maps: Option<&Path>, iwad: Option<&Path>) -> Result<EnvOptions, Failure> {
-    looks_telling(maps, iwad, |left_out| note!("hasard: {left_out}"))
+    looks_reporting(maps, iwad, |left_out| note!("hasard: {left_out}"))
 }
 
-/// The same, telling the caller what of a map is left out.
-pub fn looks_telling(
+/// The same; `report` is given what of a map is left out.
+pub fn looks_reporting(
     maps: Option<&Path>,
     iwad: Option<&Path>,
-    tell: fn(&str),
+    report: fn(&str),
 ) -> Result<EnvOptions, Failure> {
     let auto = |given: &Path| given == Path::new("auto");
     let iwad = match iwad {
@@ -35,7 +35,7 @@ pub fn looks_telling(
     };
     let place = if auto(maps) { find_maps().map_err(Failure::bad)? } else { maps.to_owned() };
     // The maps are read, and laid over the IWAD, when it is known which is played.
-    let maps = Maps::new(&place, iwad.as_deref()).telling(tell);
+    let maps = Maps::new(&place, iwad.as_deref()).reporting_to(report);
     Ok(EnvOptions { maps: Some(Arc::new(maps)), ..EnvOptions::default() })
 }
 

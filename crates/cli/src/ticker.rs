@@ -10,7 +10,7 @@ const FIRST: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
 /// Time between a terminal's lines, and a log's.
 const EVERY: [Duration; 2] = [Duration::from_millis(200), Duration::from_secs(10)];
 
-/// Tells it on standard error.
+/// Reports it on standard error.
 pub struct Ticker {
     unit: &'static str,
     total: u64,

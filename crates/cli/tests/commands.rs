@@ -9,8 +9,8 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// A map of ours, written and given back by name, is the built-in one; recordings tell the two
-/// apart.
+/// A map of ours, written and given back by name, is the built-in one; recordings distinguish the
+/// two.
 #[test]
 fn a_map_from_a_file_is_played_and_remembered() {
     let folder = Folder::new("maps");
@@ -123,14 +123,14 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
 #[test]
 fn an_episode_is_recorded_replayed_and_drawn() {
     let folder = Folder::new("episode");
-    let told: Value = serde_json::from_str(
+    let recorded: Value = serde_json::from_str(
         &folder.ok("record CollateralDamageLevel1-v0 --policy sticky:5 --seed 3 --rules released --steps 40 -o a.episode --json"),
     )
     .unwrap();
-    assert_eq!((&told["length"], &told["seed"]), (&Value::from(40), &Value::from(3)));
+    assert_eq!((&recorded["length"], &recorded["seed"]), (&Value::from(40), &Value::from(3)));
     let again: Value = serde_json::from_str(&folder.ok("replay a.episode --json")).unwrap();
     for key in ["env", "seed", "return", "cost", "length", "terminated", "truncated"] {
-        assert_eq!(told[key], again[key], "{key}");
+        assert_eq!(recorded[key], again[key], "{key}");
     }
     folder.ok("record a.episode --size 64x48 --steps 10 -o a.mp4 --beside depth,automap");
     folder.ok("replay a.episode --size 64x48 --frame-every 20 -o a.gif");
@@ -161,9 +161,9 @@ fn every_view_is_drawn() {
         let line = format!(
             "render DetonatorsDilemmaLevel1-v0 --step 5 --size 160x120 --buffer {view} -o {view}.png --json"
         );
-        let told: Value = serde_json::from_str(&folder.ok(&line)).unwrap();
-        let labels = told["labels"].as_array().map(Vec::len);
-        assert_eq!(labels.is_some(), view == "labels" || view == "segmented", "{told}");
+        let report: Value = serde_json::from_str(&folder.ok(&line)).unwrap();
+        let labels = report["labels"].as_array().map(Vec::len);
+        assert_eq!(labels.is_some(), view == "labels" || view == "segmented", "{report}");
         let picture = hasard_media::png::read(&folder.0.join(format!("{view}.png"))).unwrap();
         assert_eq!((picture.width(), picture.height()), (160, 120));
         let grey =
@@ -226,9 +226,10 @@ fn an_evaluation_shows_the_tails() {
     let small = "--algo PPOLag --preset quick --envs 2 --threads 1 --set network.dense=[32] --set network.recurrent=32 \
                  --observation grey --size 64x48 --frames 600 --quiet";
     folder.ok(&format!("train RemedyRushLevel1-v0 --safety-budget 3 --out run {small}"));
-    let told =
+    let output =
         folder.ok("eval run --episodes 11 --json --worst 2 -o worst.gif --calibration table.csv");
-    let lines: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let lines: Vec<Value> =
+        output.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let mut costs: Vec<f64> =
         lines[..11].iter().map(|line| line["cost"].as_f64().unwrap()).collect();
     let summary = &lines[11]["summary"];
@@ -282,12 +283,13 @@ fn an_agent_is_evaluated_under_other_rules() {
                  --set episode_steps=8 --observation grey --size 64x48 --frames 64 --quiet";
     for (own, asked, budget) in [("usual", "", 5.0), ("asked", "--safety-budget 7", 7.0)] {
         folder.ok(&format!("train ArmamentBurdenLevel1-v0 --out {own} {asked} {small}"));
-        let told = folder.ok(&format!("eval {own} --latest --episodes 1 --rules released --json"));
+        let output =
+            folder.ok(&format!("eval {own} --latest --episodes 1 --rules released --json"));
         let lines: Vec<Value> =
-            told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+            output.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         // There every step costs that ends with USE held.
-        assert!(lines[0]["costs"]["discard"].as_f64().unwrap() > 0.0, "{told}");
-        assert_eq!(lines[1]["summary"]["constraints"][0]["budget"], budget, "{told}");
+        assert!(lines[0]["costs"]["discard"].as_f64().unwrap() > 0.0, "{output}");
+        assert_eq!(lines[1]["summary"]["constraints"][0]["budget"], budget, "{output}");
     }
     // In Remedy Rush SPEED and JUMP change places; the agent presses what it was trained to press,
     // as in a rollout.
@@ -301,8 +303,8 @@ fn an_agent_is_evaluated_under_other_rules() {
     for what in ["return", "cost", "length", "stats"] {
         assert_eq!(evaluated[what], rolled[what], "{what}");
     }
-    let told = folder.ok("eval usual --latest --episodes 1 --json");
-    assert!(told.contains("\"budget\":50.0") && told.contains("\"discard\":0.0"), "{told}");
+    let output = folder.ok("eval usual --latest --episodes 1 --json");
+    assert!(output.contains("\"budget\":50.0") && output.contains("\"discard\":0.0"), "{output}");
 }
 
 /// A1: a budget on a term that the scalar cost does not count binds, is reported, and is judged by
@@ -317,16 +319,17 @@ fn a_budget_on_an_uncounted_term_binds_and_is_judged() {
         // An agent that has learned nothing comes by the zone now and then.
         ("ArmamentBurdenLevel1-v0", "zone_visits=0.01", "zone_visits", 0.01),
     ] {
-        let told = folder.ok(&format!("train {id} --safety-budget {budget} --out {term} {small}"));
-        let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
+        let output =
+            folder.ok(&format!("train {id} --safety-budget {budget} --out {term} {small}"));
+        let last: Value = serde_json::from_str(output.lines().last().unwrap()).unwrap();
         let measured = last["constraint_costs"][0].as_f64().unwrap();
         assert!(measured > most, "{last}");
         assert_eq!(last[format!("cost/{term}")].as_f64().unwrap(), measured, "{last}");
         assert!(last["multiplier"].as_f64().unwrap() > 0.0, "{last}");
-        let told = folder.ok(&format!("eval {term} --episodes 12 --json"));
+        let output = folder.ok(&format!("eval {term} --episodes 12 --json"));
         let lines: Vec<Value> =
-            told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-        assert_eq!(lines[0]["uncounted"], serde_json::json!([term]), "{told}");
+            output.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(lines[0]["uncounted"], serde_json::json!([term]), "{output}");
         let costs = lines.iter().filter_map(|line| line["costs"][term].as_f64());
         let (count, sum) = costs.fold((0.0, 0.0), |(count, sum), cost| (count + 1.0, sum + cost));
         let judged = &lines[12]["summary"]["constraints"][0];
@@ -334,12 +337,12 @@ fn a_budget_on_an_uncounted_term_binds_and_is_judged() {
         assert!(
             (judged["cost_mean"].as_f64().unwrap() - sum / count).abs() < 1e-9
                 && sum / count > most,
-            "{told}"
+            "{output}"
         );
         assert_eq!(
             (&judged["within_budget"], &lines[12]["summary"]["within_budget"]),
             (&false.into(), &false.into()),
-            "{told}"
+            "{output}"
         );
     }
     assert!(
@@ -369,27 +372,27 @@ fn a_run_selects_an_agent_that_fits_in_a_file() {
                  --set episode_steps=8 --observation grey --size 64x48 --set evaluation.episodes=2 \
                  --set evaluation.confirming_episodes=3 --eval-every 128";
     let budgets = "--safety-budget 1000 --safety-budget harmful_items=2000";
-    let told = folder.ok(&format!(
+    let output = folder.ok(&format!(
         "train RemedyRushLevel1-v0 --algo ppolag --frames 256 --json {budgets} {small}"
     ));
     // The directory has the algorithm's own name, and the run says what it selects.
     assert!(folder.0.join("runs/RemedyRushLevel1-v0-PPOLag-seed1/selected.json").is_file());
-    let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
+    let last: Value = serde_json::from_str(output.lines().last().unwrap()).unwrap();
     let closing = &last["selection"]["closing"];
     assert_eq!(
         (&closing["episodes"], &closing["constraints"][1]["budget"]),
         (&Value::from(3), &Value::from(2000.0)),
-        "{told}"
+        "{output}"
     );
     assert_eq!(
-        told.lines().filter(|line| line.contains("eval/cost/harmful_items")).count(),
+        output.lines().filter(|line| line.contains("eval/cost/harmful_items")).count(),
         2,
-        "{told}"
+        "{output}"
     );
     let run = "runs/RemedyRushLevel1-v0-PPOLag-seed1";
     let summary = |line: &str| -> Value {
-        let told = folder.ok(line);
-        serde_json::from_str::<Value>(told.lines().last().unwrap()).unwrap()["summary"].clone()
+        let output = folder.ok(line);
+        serde_json::from_str::<Value>(output.lines().last().unwrap()).unwrap()["summary"].clone()
     };
     let judged = summary(&format!("eval {run} --episodes 2 --json"));
     assert_eq!(judged["constraints"][1]["term"], "harmful_items", "{judged}");
@@ -423,13 +426,13 @@ fn a_run_selects_an_agent_that_fits_in_a_file() {
 #[test]
 fn a_measurement_of_beginnings_alone_says_so() {
     let folder = Folder::new("bench");
-    let told = |line: &str| String::from_utf8(folder.run(line).stderr).unwrap();
-    let short = told("bench ArmamentBurdenLevel1-v0 --envs 256 --seconds 0.02");
+    let stderr = |line: &str| String::from_utf8(folder.run(line).stderr).unwrap();
+    let short = stderr("bench ArmamentBurdenLevel1-v0 --envs 256 --seconds 0.02");
     assert!(short.lines().count() == 1 && short.contains("--seconds "), "{short}");
     let episode: f64 =
         short.split("--seconds ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!(episode >= 1.0, "{short}");
-    assert_eq!(told("bench ArmamentBurdenLevel1-v0 --envs 1 --seconds 2"), "");
+    assert_eq!(stderr("bench ArmamentBurdenLevel1-v0 --envs 1 --seconds 2"), "");
 }
 
 /// Row 15 of first contact: the program has its agents wherever it is, with no clone beside it.
@@ -488,14 +491,15 @@ fn people_are_met_half_way() {
         folder.ok("render RemedyRushLevel1 --size 64x48 -o new/folder/a.png"),
         "new/folder/a.png: 64x48\n"
     );
-    let told = |line: &str| String::from_utf8(folder.run(line).stderr).unwrap();
-    let warning = told("rollout RemedyRushLevel2 --policy zoo:VolcanicVentureLevel1 --episodes 1");
+    let stderr = |line: &str| String::from_utf8(folder.run(line).stderr).unwrap();
+    let warning =
+        stderr("rollout RemedyRushLevel2 --policy zoo:VolcanicVentureLevel1 --episodes 1");
     assert!(
         warning.lines().count() == 1
             && warning
                 .contains("was trained in VolcanicVentureLevel1-v0, not in RemedyRushLevel2-v0")
     );
-    assert_eq!(told("rollout RemedyRushLevel2 --policy zoo:RemedyRushLevel1 --episodes 1"), "");
+    assert_eq!(stderr("rollout RemedyRushLevel2 --policy zoo:RemedyRushLevel1 --episodes 1"), "");
     assert!(folder.ok("sweep quick --frames 1.5M --dry-run").contains("--frames 1500000"));
     folder.ok("contact-sheet RemedyRush");
     assert!(folder.0.join("sheets/remedy_rush_sheet.png").is_file());

@@ -241,6 +241,15 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
         .current_dir(&folder.0)
         .stderr(Stdio::null())
         .stdout(Stdio::piped());
+    // Where the tests run in the background of a script, SIGINT is ignored, and bash would inherit
+    // that.
+    // SAFETY: `signal` may be called between fork and exec.
+    unsafe {
+        std::os::unix::process::CommandExt::pre_exec(shell, || {
+            libc::signal(libc::SIGINT, libc::SIG_DFL);
+            Ok(())
+        });
+    }
     let mut shell =
         Running(std::os::unix::process::CommandExt::process_group(shell, 0).spawn().unwrap());
     wait_for("the loop", || folder.0.join("loop1/metrics.jsonl").exists());
@@ -420,16 +429,16 @@ fn scalar_steps(bytes: &[u8]) -> Vec<u64> {
 #[test]
 fn a_log_says_how_far_a_training_is() {
     let folder = Folder::new("log");
-    let told =
+    let output =
         folder.ok(&format!("{SMALL} --frames 20000 --set reporting.report_seconds=1000 --out run"));
     // A slow machine says before that it is starting.
-    let line = told.lines().find(|line| line.contains("frames/s")).unwrap();
+    let line = output.lines().find(|line| line.contains("frames/s")).unwrap();
     for word in
         [" of 20,000 frames (", " frames/s, ", " left; return ", ", cost ", " of 5, multiplier "]
     {
         assert!(line.contains(word), "'{word}' is missing in: {line}");
     }
-    assert!(!told.contains('\r') && !told.contains('\u{1b}'), "{told:?}");
+    assert!(!output.contains('\r') && !output.contains('\u{1b}'), "{output:?}");
     let again = folder.ok(&format!("{SMALL} --resume --out run"));
     assert!(again.contains("run was finished before, at ") && !again.contains("0/s"), "{again}");
 }

@@ -231,7 +231,7 @@ fn what_cannot_be_written_is_named() {
 }
 
 #[test]
-fn a_full_standard_output_is_told() {
+fn a_full_standard_output_is_reported() {
     let den = Den::new("full");
     let Ok(full) = std::fs::File::options().write(true).open("/dev/full") else {
         eprintln!("skipped: this system has no /dev/full");

@@ -40,10 +40,10 @@ impl Folder {
     /// What a command that must succeed prints.
     fn ok(&self, below: &str, line: &str, words: &[&OsStr]) -> String {
         let output = self.run(below, line, words);
-        let told = String::from_utf8_lossy(&output.stderr).into_owned()
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned()
             + &String::from_utf8_lossy(&output.stdout);
-        assert!(output.status.success(), "{line} {words:?}: {told}");
-        told
+        assert!(output.status.success(), "{line} {words:?}: {printed}");
+        printed
     }
 
     fn refused(&self, below: &str, line: &str) -> String {
@@ -137,14 +137,15 @@ fn names_that_are_not_text_are_taken_by_every_command() {
         word
     };
     folder.ok("", &format!("export-wad {ENV} -o"), &[wad]);
-    let told = folder.ok(
+    let output = folder.ok(
         "",
         &format!(
             "{SMALL} --frames 128 --eval-every 128 --set evaluation.episodes=2 --set evaluation.confirming_episodes=2 --out"
         ),
         &[run, OsStr::new("--maps"), wad],
     );
-    let hint = told.split("is a run directory: ").nth(1).unwrap().split(", hasard").next().unwrap();
+    let hint =
+        output.split("is a run directory: ").nth(1).unwrap().split(", hasard").next().unwrap();
     folder.pasted(&format!("{hint} --episodes 1"));
     folder.ok("", &format!("{SMALL} --resume --frames 256 --out"), &[run]);
     folder.ok("", "eval --episodes 1", &[run]);
@@ -189,8 +190,8 @@ fn commands_in_hints_can_be_pasted() {
     let run = OsStr::new("my runs/it's one");
     // A short run was never evaluated: there is no agent to export yet, and the command that is
     // named makes one.
-    let told = folder.ok("", &format!("{SMALL} --frames 128 --out"), &[run]);
-    let hints = told.split("is a run directory: ").nth(1).unwrap();
+    let output = folder.ok("", &format!("{SMALL} --frames 128 --out"), &[run]);
+    let hints = output.split("is a run directory: ").nth(1).unwrap();
     let (eval, report) = hints.trim().split_once(", hasard report").unwrap();
     folder.pasted(&format!("{eval} --episodes 1"));
     folder.pasted(&format!("hasard report{report}"));
@@ -200,11 +201,11 @@ fn commands_in_hints_can_be_pasted() {
     folder.pasted(&format!(
         "hasard train{command} --set evaluation.episodes=2 --set evaluation.confirming_episodes=2"
     ));
-    let told =
+    let output =
         folder.ok("", "export-agent", &[run, OsStr::new("-o"), OsStr::new("an agent.agent")]);
     folder.pasted(&format!(
         "hasard eval{} --episodes 1",
-        told.trim().rsplit_once("hasard eval").unwrap().1
+        output.trim().rsplit_once("hasard eval").unwrap().1
     ));
     let again = folder.ok("", &format!("{SMALL} --resume --out"), &[run]);
     let command = again.lines().find(|line| line.contains("was finished before")).unwrap();

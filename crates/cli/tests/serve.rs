@@ -83,7 +83,7 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     browser.wait(
         "document.querySelector('h1').innerText.includes('PPOPID in Volcanic Venture 1, seed 1')",
     );
-    browser.wait("document.querySelector('.told').innerText.includes('training')");
+    browser.wait("document.querySelector('.readout').innerText.includes('training')");
     browser.photograph("serve_run_trained");
 
     // Its agent goes into the zoo.

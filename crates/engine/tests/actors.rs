@@ -494,7 +494,7 @@ fn a_barrel_bursts_11_to_14_tics_after_the_shot_and_takes_its_neighbours_along()
         assert!(dying.flags.any(ActorFlags::SOLID) && !dying.flags.any(ActorFlags::SHOOTABLE));
         let (chained, source) =
             await_death(&mut world, second, 20, Buttons::default()).expect("the blast reaches it");
-        assert_eq!(source, Some(player), "whoever shot the first barrel is to blame");
+        assert_eq!(source, Some(player), "the shooter of the first barrel is to blame");
         delays.insert(chained - shot);
         let (_, source) = await_death(&mut world, imp, 20, Buttons::default())
             .expect("the second blast reaches the imp");

@@ -1,4 +1,4 @@
-//! Rules of the world beyond recorded motion: items, room, moving floors, light, harm, copies.
+//! Rules of the world beyond recorded motion: items, room, moving floors, light, damage, copies.
 //!
 //! Long because each rule is a small room of its own.
 
@@ -313,7 +313,7 @@ fn harmful_floors_hurt_those_who_stand_on_them() {
     let health = |world: &World| body(world).health;
     run(&mut world, 8, NOTHING);
     assert_eq!(health(&world), 98);
-    // In the air there is no harm.
+    // In the air there is no damage.
     let player = world.players[0].actor;
     world.get_mut(player).unwrap().vz = units(8);
     run(&mut world, 1, NOTHING);

@@ -1,5 +1,5 @@
 //! Lanes chosen for a step or a reset live as they would in a batch of their own; memory may be
-//! lent; errors cost no buffers.
+//! external; errors cost no buffers.
 
 mod echo;
 
@@ -117,7 +117,7 @@ fn restarted_lanes_begin_anew_and_the_others_stay() {
 }
 
 #[test]
-fn resting_lanes_are_told_until_they_are_reset() {
+fn resting_lanes_are_reported_until_they_are_reset() {
     for threads in [0, 2] {
         let autoreset = Autoreset::Disabled;
         let mut worlds =
@@ -145,29 +145,30 @@ fn resting_lanes_are_told_until_they_are_reset() {
 }
 
 #[test]
-fn lent_memory_is_written_as_owned_memory_is() {
+fn external_memory_is_written_as_owned_memory_is() {
     for threads in [0, 3] {
         let options = VecOptions { lanes: 7, groups: 2, seed: 2, threads, ..VecOptions::default() };
         let (mut worlds, mut twins) = (make(options), make(options));
-        let (mut lent, mut owned) = (worlds.whole_batch(), twins.whole_batch());
-        lent.observations = Buffer::lent(vec![0; 7 * 12].into_boxed_slice());
-        lent.rewards = Buffer::lent(vec![0.0; 7]);
-        lent.truncated = Buffer::lent(vec![false; 7]);
-        let address = lent.observations.as_ptr();
-        worlds.reset(&mut lent).unwrap();
+        let (mut external, mut owned) = (worlds.whole_batch(), twins.whole_batch());
+        external.observations = Buffer::external(vec![0; 7 * 12].into_boxed_slice());
+        external.rewards = Buffer::external(vec![0.0; 7]);
+        external.truncated = Buffer::external(vec![false; 7]);
+        let address = external.observations.as_ptr();
+        worlds.reset(&mut external).unwrap();
         twins.reset(&mut owned).unwrap();
         for step in 0..30 {
-            assert_eq!(lent, owned);
-            act(&mut lent, &worlds, &[0, 1, 2, 3, 4, 5, 6], step);
-            owned.actions.clone_from(&lent.actions);
-            worlds.step(&mut lent).unwrap();
+            assert_eq!(external, owned);
+            act(&mut external, &worlds, &[0, 1, 2, 3, 4, 5, 6], step);
+            owned.actions.clone_from(&external.actions);
+            worlds.step(&mut external).unwrap();
             twins.step(&mut owned).unwrap();
         }
-        assert_eq!(lent.observations.as_ptr(), address, "written in place");
-        assert!(lent.observations.is_lent() && !lent.clone().observations.is_lent());
-        lent.rewards = Buffer::lent(vec![0.0; 6]);
+        assert_eq!(external.observations.as_ptr(), address, "written in place");
+        assert!(external.observations.is_external());
+        assert!(!external.clone().observations.is_external());
+        external.rewards = Buffer::external(vec![0.0; 6]);
         assert!(matches!(
-            worlds.step(&mut lent),
+            worlds.step(&mut external),
             Err(EnvError::BatchSize { field: "rewards", .. })
         ));
     }
@@ -291,8 +292,8 @@ fn statistics_come_with_every_step() {
             worlds.step(&mut batch).unwrap();
             healths.push(batch.statistics[2]);
             for episode in &batch.episodes {
-                let told: Vec<f64> = episode.stats.iter().map(|(_, value)| *value).collect();
-                assert_eq!(batch.statistics[episode.lane * 3..(episode.lane + 1) * 3], told);
+                let stats: Vec<f64> = episode.stats.iter().map(|(_, value)| *value).collect();
+                assert_eq!(batch.statistics[episode.lane * 3..(episode.lane + 1) * 3], stats);
                 ends += 1;
             }
         }

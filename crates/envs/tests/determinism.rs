@@ -149,7 +149,7 @@ fn by_groups(id: &str, env: &EnvOptions, options: VecOptions, steps: usize) -> V
     lives
 }
 
-/// Tells the first step, lane and part where two ways of stepping differ.
+/// Names the first step, lane and part where two ways of stepping differ.
 fn assert_same(found: &[Vec<Moment>], expected: &[Vec<Moment>], what: &str) {
     for step in 0..expected[0].len() {
         for (lane, (found, expected)) in found.iter().zip(expected).enumerate() {

@@ -22,7 +22,7 @@ use std::hash::Hasher;
 const FILE: &str = "tests/goldens.txt";
 const STEPS: u32 = 300;
 const PARTS: [&str; 4] = ["frames", "rewards", "costs", "state"];
-const HEAD: &str = "# Written by tests/golden.rs, which tells how: id, rules, constraint, actions, then fingerprints of 300 steps.\n";
+const HEAD: &str = "# Written by tests/golden.rs, which says how: id, rules, constraint, actions, then fingerprints of 300 steps.\n";
 
 /// Fingerprints of the parts, in the order of [`PARTS`]. Each sub-action is held for a while, so
 /// that the agent gets about.
@@ -123,7 +123,7 @@ fn fingerprints_are_as_recorded() {
     }
     assert!(
         moved.is_empty(),
-        "{} of {} lines moved; if that is meant, bless them as tests/golden.rs tells:\n{}",
+        "{} of {} lines moved; if that is intended, bless them as tests/golden.rs says:\n{}",
         moved.len(),
         found.len(),
         moved.join("\n")

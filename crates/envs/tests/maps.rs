@@ -159,7 +159,7 @@ fn one_agent_plays_whatever_other_starts_the_map_has() {
 }
 
 #[test]
-fn what_is_left_out_is_told_in_one_line() {
+fn what_is_left_out_is_said_in_one_line() {
     let folder = Folder::new("left-out");
     let env = one_map(&folder, "RemedyRushLevel1-v0", |source| {
         source.lines[0].special = 160;
@@ -168,20 +168,20 @@ fn what_is_left_out_is_told_in_one_line() {
         source.sectors[0].special = 9;
         source.things.push(thing(9080, 224.0, 20.0, 0, 0));
     });
-    let told = env.unwrap().left_out().unwrap();
+    let found = env.unwrap().left_out().unwrap();
     let line = ": left out: line special 160 (1), sector special 9 (1), thing type 9080 (1)";
-    assert!(told.ends_with(line) && told.contains("one.wad"), "{told}");
+    assert!(found.ends_with(line) && found.contains("one.wad"), "{found}");
     let left_out = |change: fn(&mut MapSource)| {
         one_map(&folder, "RemedyRushLevel1-v0", change).unwrap().left_out()
     };
     assert_eq!(left_out(|_| ()), None);
     // The numbers of an older game's line types, where they are: every one of them acts.
-    let told = left_out(|source| {
+    let found = left_out(|source| {
         (source.namespace, source.lines[1].special, source.sectors[0].special) =
             ("doom".into(), 12, 1);
     })
     .unwrap();
-    assert!(told.ends_with(": left out: line special 12 (1), sector special 1 (1)"), "{told}");
+    assert!(found.ends_with(": left out: line special 12 (1), sector special 1 (1)"), "{found}");
 }
 
 #[test]

@@ -110,21 +110,21 @@ fn beside_plain_batches(full: bool, steps: usize) {
             brought[task][1] += batch.costs[lane];
             let terms = plain[task].cost_terms();
             for (place, term) in mixed.cost_terms().iter().enumerate() {
-                let told = batch.cost_terms[lane * mixed.cost_terms().len() + place];
+                let found = batch.cost_terms[lane * mixed.cost_terms().len() + place];
                 let own = terms.iter().position(|one| one == term);
                 let alone = match own {
                     Some(at) => batches[task].cost_terms[lane * terms.len() + at],
                     None if term.name == IDS[task] => batches[task].costs[lane],
                     None => 0.0,
                 };
-                assert_eq!(told, alone, "step {step}, lane {lane}, {}", term.name);
+                assert_eq!(found, alone, "step {step}, lane {lane}, {}", term.name);
             }
             let names = plain[task].statistics();
             for (place, name) in mixed.statistics().iter().enumerate() {
-                let told = batch.statistics[lane * mixed.statistics().len() + place];
+                let found = batch.statistics[lane * mixed.statistics().len() + place];
                 let at = names.iter().position(|one| one == name);
                 let alone = at.map_or(0.0, |at| batches[task].statistics[lane * names.len() + at]);
-                assert_eq!(told, alone, "step {step}, lane {lane}, {name}");
+                assert_eq!(found, alone, "step {step}, lane {lane}, {name}");
             }
         }
         for episode in &batch.episodes {

@@ -207,7 +207,7 @@ fn inline(map: &str) -> String {
 #[test]
 fn a_task_that_is_played_says_what_its_map_leaves_out() {
     static SAID: std::sync::Mutex<Vec<String>> = std::sync::Mutex::new(Vec::new());
-    hasard_envs::maps::tell_of_tasks(|line| SAID.lock().unwrap().push(line.to_owned()));
+    hasard_envs::maps::report_tasks_to(|line| SAID.lock().unwrap().push(line.to_owned()));
     let folder = Folder::new("said");
     let odd =
         text() + "thing { x = 0.0; y = 256.0; type = 31338; skill3 = true; single = true; }\n";

@@ -1,5 +1,5 @@
 //! What the paper's text was made to mean where, taken literally, it would pay or punish what
-//! nobody meant.
+//! nobody intended.
 
 use hasard_engine::map::TextureId;
 use hasard_engine::math::Fixed;

@@ -62,7 +62,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// Runs something and tells the most bytes that it held at a time beyond those held before.
+/// Runs something and measures the most bytes that it held at a time beyond those held before.
 pub fn measured<T>(run: impl FnOnce() -> T) -> (T, usize) {
     let before = HELD.load(Relaxed);
     PEAK.store(before, Relaxed);

@@ -55,12 +55,12 @@ impl Coverage {
     pub fn clear(&mut self) {
         for &(start, length) in &self.parts {
             // SAFETY: the linker's bounds of memory that lives as long as the program; only
-            // counting code writes to it, and a lost count does no harm.
+            // counting code writes to it, and a lost count is acceptable.
             unsafe { std::ptr::write_bytes(start as *mut u8, 0, length) };
         }
     }
 
-    /// Notes what was reached since [`Coverage::clear`], and tells whether anything of it is new.
+    /// Notes what was reached since [`Coverage::clear`], and says whether anything of it is new.
     pub fn note(&mut self) -> bool {
         let before = self.reached;
         let mut at = 0;

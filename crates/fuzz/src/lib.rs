@@ -11,8 +11,8 @@
 //! | [`worker`], [`supervisor`] | the search: a process that tries, and one that outlives its crashes |
 //!
 //! Everything follows from the seed, so that a search can be repeated. `docs/results/fuzzing.md`
-//! tells how to search; files that once did harm, or try to, lie in `hostile/`, a folder a target,
-//! and `tests/hostile.rs` tries them all.
+//! says how to search; files that once broke a limit, or try to, lie in `hostile/`, a folder a
+//! target, and `tests/hostile.rs` tries them all.
 
 pub mod allocation;
 pub mod coverage;

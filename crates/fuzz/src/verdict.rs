@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 /// Longest that an input may take.
 pub const LONGEST: Duration = Duration::from_secs(3);
 
-/// Processor time of this thread so far, where the system tells: on a busy machine the clock says
-/// little.
+/// Processor time of this thread so far, where the system reports it: on a busy machine the clock
+/// says little.
 fn processor_time() -> Option<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/stat").ok()?;
     let ticks: u64 = text
@@ -43,8 +43,8 @@ pub enum Verdict {
     Accepted,
     /// It was refused with an error.
     Refused,
-    /// It did harm: a word for the kind, and what happened.
-    Harm(&'static str, String),
+    /// It broke a limit or panicked: a word for the kind, and what happened.
+    Failed(&'static str, String),
 }
 
 /// Tries an input.
@@ -69,16 +69,16 @@ pub fn try_input(target: &Target, bytes: &[u8]) -> Verdict {
             let text = panic.downcast_ref::<String>().map(String::as_str);
             let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no text");
             let place = PLACE.lock().map(|place| place.clone()).unwrap_or_default();
-            Verdict::Harm(
+            Verdict::Failed(
                 "panic",
                 format!("{place}: {}", text.chars().take(200).collect::<String>()),
             )
         }
-        Ok(_) if held > target.memory + 64 * bytes.len() => Verdict::Harm(
+        Ok(_) if held > target.memory + 64 * bytes.len() => Verdict::Failed(
             "memory",
             format!("{} MiB held for an input of {} bytes", held >> 20, bytes.len()),
         ),
-        Ok(_) if took > LONGEST => Verdict::Harm(
+        Ok(_) if took > LONGEST => Verdict::Failed(
             "slow",
             format!("{} s for an input of {} bytes", took.as_secs(), bytes.len()),
         ),

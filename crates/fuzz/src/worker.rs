@@ -26,7 +26,7 @@ pub struct Tally {
     pub corpus: usize,
     /// What was reached, see [`Coverage::reached`].
     pub reached: usize,
-    /// Harm found, each kind once: its kind and text.
+    /// Failures found, each kind once: its kind and text.
     pub findings: Vec<(String, String)>,
 }
 
@@ -66,7 +66,7 @@ impl Notebook {
     }
 }
 
-/// Searches until the time is over; harmful inputs are written into `findings`.
+/// Searches until the time is over; failing inputs are written into `findings`.
 ///
 /// # Errors
 /// When the notebook or a finding cannot be written.
@@ -110,7 +110,7 @@ pub fn search(
         match try_input(target, &input) {
             Verdict::Accepted => tally.accepted += 1,
             Verdict::Refused => {}
-            Verdict::Harm(kind, text) => {
+            Verdict::Failed(kind, text) => {
                 // One of each place is enough to mend it.
                 let place = if kind == "panic" {
                     text.split(": ").next().unwrap_or_default().to_owned()
@@ -131,7 +131,7 @@ pub fn search(
     Ok(tally)
 }
 
-/// Writes a harmful input under a name that follows from it.
+/// Writes a failing input under a name that follows from it.
 ///
 /// # Errors
 /// When it cannot be written.

@@ -99,7 +99,7 @@ impl Team {
     }
 
     /// Sums of everyone's numbers, added up in the order of ranks, so that all hold the same bits.
-    /// Where nothing can be exchanged any more they become zero, and [`Team::check`] tells why.
+    /// Where nothing can be exchanged any more they become zero, and [`Team::check`] says why.
     pub fn sum(&self, numbers: &mut [f32]) {
         if self.is_alone() {
             return;

@@ -1,5 +1,4 @@
-//! Checkpoints and settings that someone meant to do harm with, or that belong to another run: an
-//! error, no panic.
+//! Checkpoints and settings that are hostile or belong to another run: an error, no panic.
 
 mod tiny;
 
@@ -75,7 +74,7 @@ fn a_checkpoint_held_against_other_constraints_is_refused() {
 }
 
 #[test]
-fn a_state_that_tells_of_other_constraints_is_refused() {
+fn a_state_of_other_constraints_is_refused() {
     let (path, checkpoint) = trained("watch");
     let state = checkpoint.join("state.json");
     let mut json: serde_json::Value =

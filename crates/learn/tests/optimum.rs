@@ -111,8 +111,8 @@ fn two_constraints_are_both_kept() {
     }
 }
 
-/// The best return within the budget of 4 is 4; a policy that does not tell rich from poor gets 2.8
-/// out of it.
+/// The best return within the budget of 4 is 4; a policy that does not distinguish rich from poor
+/// gets 2.8 out of it.
 #[test]
 fn constrained_algorithms_end_near_the_best_return_within_the_budget() {
     use AlgorithmKind::{Cup, Focops, Ipo, P3o, PpoLag, PpoPid};

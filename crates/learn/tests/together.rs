@@ -115,8 +115,8 @@ fn short(algorithm: AlgorithmKind) -> TrainConfig {
 fn numbers(report: &Report) -> Vec<(String, f64)> {
     let row = report.row();
     let timed = |name: &str| name.contains("second") || ["fps", "wall_s"].contains(&name);
-    let told = row.as_object().unwrap().iter().filter(|(name, _)| !timed(name));
-    told.filter_map(|(name, value)| Some((name.clone(), value.as_f64()?))).collect()
+    let kept = row.as_object().unwrap().iter().filter(|(name, _)| !timed(name));
+    kept.filter_map(|(name, value)| Some((name.clone(), value.as_f64()?))).collect()
 }
 
 fn weights(run: &Path) -> Vec<u8> {

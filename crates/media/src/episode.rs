@@ -47,7 +47,7 @@ pub struct Header {
     /// Seed of the reset.
     pub seed: u64,
     /// Version of the program that recorded it. Another version may play it differently; then
-    /// `outcome` tells.
+    /// `outcome` shows it.
     pub program: String,
     /// Who acted: `human`, `random`, or the run of an agent.
     pub player: String,
@@ -253,7 +253,7 @@ impl EpisodeFile {
             flate2::read::ZlibDecoder::new(body).take(expected as u64 + 1).read_to_end(&mut planes);
         if inflated.is_err() || planes.len() != expected {
             return Err(bad(format!(
-                "does not hold the {steps} steps that its header tells of; record it again"
+                "does not hold the {steps} steps that its header declares; record it again"
             )));
         }
         let (actions, deltas) =
@@ -360,13 +360,13 @@ fn check_header(header: &Header, name: &Path) -> Result<(), MediaError> {
         return Err(MediaError::format(
             name,
             format!(
-                "tells of {} steps of {} + {} sub-actions, beyond the {MAX_STEPS} of {MAX_GROUPS} + {MAX_DELTAS} that a file may hold",
+                "declares {} steps of {} + {} sub-actions, beyond the {MAX_STEPS} of {MAX_GROUPS} + {MAX_DELTAS} that a file may hold",
                 header.steps, header.groups, header.deltas
             ),
         ));
     }
     if header.groups == 0 && header.deltas == 0 && header.steps > 0 {
-        return Err(MediaError::format(name, "tells of steps without any sub-action"));
+        return Err(MediaError::format(name, "declares steps without any sub-action"));
     }
     Ok(())
 }

@@ -17,7 +17,7 @@ const GROWING: u32 = 24;
 
 /// A number that rises.
 struct Rise {
-    harm: bool,
+    is_cost: bool,
     size: f64,
     /// Tics since it appeared, and since it was last added to.
     age: u32,
@@ -33,22 +33,23 @@ pub struct Overlay {
 impl Overlay {
     /// Takes what a step brought.
     pub fn step(&mut self, step: &Step) {
-        for (harm, size) in [(false, step.reward), (true, step.cost)] {
+        for (is_cost, size) in [(false, step.reward), (true, step.cost)] {
             if size != 0.0 {
-                self.add(harm, size);
+                self.add(is_cost, size);
             }
         }
     }
 
-    fn add(&mut self, harm: bool, size: f64) {
-        let open =
-            |rise: &&mut Rise| rise.harm == harm && rise.still < TOGETHER && rise.age < GROWING;
+    fn add(&mut self, is_cost: bool, size: f64) {
+        let open = |rise: &&mut Rise| {
+            rise.is_cost == is_cost && rise.still < TOGETHER && rise.age < GROWING
+        };
         match self.rises.iter_mut().find(open) {
             Some(rise) => {
                 rise.size += size;
                 rise.still = 0;
             }
-            None => self.rises.push(Rise { harm, size, age: 0, still: 0 }),
+            None => self.rises.push(Rise { is_cost, size, age: 0, still: 0 }),
         }
     }
 
@@ -70,13 +71,13 @@ impl Overlay {
     pub fn draw(&self, picture: &mut Picture) {
         let scale = (picture.height() / 120).clamp(1, 4);
         for rise in &self.rises {
-            let words = match rise.harm {
+            let words = match rise.is_cost {
                 true => format!("cost {}", plain(rise.size)),
                 false if rise.size > 0.0 => format!("+{}", plain(rise.size)),
                 false => plain(rise.size),
             };
-            let colour = if rise.harm || rise.size < 0.0 { BAD } else { GOOD };
-            let middle = picture.width() * (if rise.harm { 2 } else { 1 }) / 3;
+            let colour = if rise.is_cost || rise.size < 0.0 { BAD } else { GOOD };
+            let middle = picture.width() * (if rise.is_cost { 2 } else { 1 }) / 3;
             let left = middle as isize - (text::width(&words) * scale / 2) as isize;
             let climbed = picture.height() as u32 / 4 * rise.age / LIFE;
             let top = (picture.height() / 2) as isize - climbed as isize;
@@ -163,7 +164,7 @@ mod tests {
             (0..4).for_each(|_| overlay.tic());
         }
         let sizes: Vec<(bool, f64)> =
-            overlay.rises.iter().map(|rise| (rise.harm, rise.size)).collect();
+            overlay.rises.iter().map(|rise| (rise.is_cost, rise.size)).collect();
         assert_eq!(sizes, [(false, 3.0), (true, 12.0)]);
         (0..TOGETHER).for_each(|_| overlay.tic());
         overlay.step(&step(1.0, 0.0));

@@ -13,7 +13,7 @@ const GOOD: [u8; 3] = [70, 190, 110];
 const BAD: [u8; 3] = [226, 72, 72];
 const EMPTY: [u8; 3] = [52, 56, 64];
 
-/// What the panel tells.
+/// What the panel shows.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Panel {
     /// Seconds since the episode's start, at 35 tics a second.

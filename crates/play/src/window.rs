@@ -165,7 +165,7 @@ impl App {
         Ok(())
     }
 
-    /// Keeps the finished episode and tells how it went.
+    /// Keeps the finished episode and shows how it went.
     fn end_episode(&mut self) -> Result<(), PlayError> {
         let episode = self.stage.env().episode();
         let (terminated, episode_return) = (episode.terminated, episode.episode_return);

@@ -31,7 +31,7 @@ const NAMES: [&str; 20] = [
     "published_colours",
 ];
 
-/// What an environment is made with, and what only its attributes tell.
+/// What an environment is made with, and what only its attributes show.
 pub struct Arguments {
     pub options: EnvOptions,
     pub safety_budget: Option<f64>,
@@ -100,7 +100,7 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
     defaults.size = resolution.value().unwrap_or(defaults.size);
     if maps.is_some() || iwad.is_some() {
         // Together: pictures of a map lie over those of the IWAD. What is left out of a map the
-        // program tells, where people look.
+        // program says, where people look.
         let looks = py.detach(|| hasard_cli::looks(maps.as_deref(), iwad.as_deref(), |_| ()));
         let looks = looks.map_err(|line| INVALID_OPTION.error(py, line))?;
         (arguments.options.maps, arguments.options.assets) = (looks.maps, looks.assets);
@@ -210,7 +210,7 @@ pub fn number(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> Py
         .ok_or_else(|| refused(given, name, &format!("{least}..={most}")))
 }
 
-/// Which one of several is meant: none if no machine could have so many, or the number is negative.
+/// The number of one of several: none if no machine could have so many, or the number is negative.
 fn place(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     let wrong =
         |_| PyTypeError::new_err(format!("{name} must be an integer, got {}", shown(given)));

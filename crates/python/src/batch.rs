@@ -1,6 +1,6 @@
 //! What a step of worlds brought, as arrays.
 
-use crate::pool::{Pool, array, lend};
+use crate::pool::{Pool, array, pooled};
 use hasard_envs::Episode;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -84,11 +84,14 @@ impl Batch {
         let statistics = [count, batch.statistics.len().checked_div(count).unwrap_or(0)];
         let observations = match bound.observations {
             Some(array) => array,
-            None => {
-                lend(py, std::mem::take(&mut batch.observations).into_vec(), &frames(count), pool)?
-                    .into_any()
-                    .unbind()
-            }
+            None => pooled(
+                py,
+                std::mem::take(&mut batch.observations).into_vec(),
+                &frames(count),
+                pool,
+            )?
+            .into_any()
+            .unbind(),
         };
         let final_lanes: Vec<i32> = batch.final_lanes.iter().map(|&lane| lane as i32).collect();
         let final_shape = frames(final_lanes.len());
@@ -134,21 +137,21 @@ impl Batch {
 fn episodes(py: Python<'_>, episodes: &[Episode]) -> PyResult<Py<PyAny>> {
     let list = PyList::empty(py);
     for episode in episodes {
-        let told = PyDict::new(py);
-        told.set_item("lane", episode.lane)?;
-        told.set_item("seed", episode.seed)?;
-        told.set_item("return", episode.episode_return)?;
-        told.set_item("cost", episode.cost)?;
-        told.set_item("length", episode.length)?;
-        told.set_item("terminated", episode.terminated)?;
-        told.set_item("truncated", episode.truncated)?;
+        let dict = PyDict::new(py);
+        dict.set_item("lane", episode.lane)?;
+        dict.set_item("seed", episode.seed)?;
+        dict.set_item("return", episode.episode_return)?;
+        dict.set_item("cost", episode.cost)?;
+        dict.set_item("length", episode.length)?;
+        dict.set_item("terminated", episode.terminated)?;
+        dict.set_item("truncated", episode.truncated)?;
         let costs: Vec<(&'static str, f64)> =
             episode.costs.iter().map(|one| (one.name, one.cost)).collect();
-        told.set_item("costs", named(py, &costs)?)?;
+        dict.set_item("costs", named(py, &costs)?)?;
         let uncounted = episode.costs.iter().filter(|one| !one.counted).map(|one| one.name);
-        told.set_item("uncounted", PyList::new(py, uncounted.collect::<Vec<_>>())?)?;
-        told.set_item("statistics", named(py, &episode.stats)?)?;
-        list.append(told)?;
+        dict.set_item("uncounted", PyList::new(py, uncounted.collect::<Vec<_>>())?)?;
+        dict.set_item("statistics", named(py, &episode.stats)?)?;
+        list.append(dict)?;
     }
     Ok(list.into_any().unbind())
 }

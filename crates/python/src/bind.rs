@@ -4,13 +4,13 @@ use crate::batch::Arrays;
 use crate::errors::Fault;
 use crate::facts::Facts;
 use crate::inner::Inner;
-use crate::memory::{Lent, bound};
+use crate::memory::{External, bound};
 use hasard_envs::{Buffer, EnvError};
 use pyo3::prelude::*;
 use pyo3::types::PySlice;
 use std::ops::Range;
 
-/// The arrays that are lent.
+/// The caller's arrays.
 pub struct Given<'a, 'py> {
     pub observations: &'a Bound<'py, PyAny>,
     pub rewards: &'a Bound<'py, PyAny>,
@@ -68,8 +68,8 @@ pub fn cut(facts: &Facts, given: &Given<'_, '_>) -> PyResult<(Vec<Memories>, Vec
     Ok((memories, arrays))
 }
 
-/// Lets batches write to the memory from now on; those that did before.
-pub fn lend(
+/// Lets batches write to the memory from now on. Returns those that did before.
+pub fn attach(
     facts: &Facts,
     inner: &mut Inner,
     memories: Vec<Memories>,
@@ -85,24 +85,24 @@ pub fn lend(
 
 /// One slot's memory.
 pub struct Memories {
-    observations: Lent<u8>,
-    rewards: Lent<f32>,
-    costs: Lent<f32>,
-    terminated: Lent<bool>,
-    truncated: Lent<bool>,
-    cost_terms: Option<Lent<f32>>,
+    observations: External<u8>,
+    rewards: External<f32>,
+    costs: External<f32>,
+    terminated: External<bool>,
+    truncated: External<bool>,
+    cost_terms: Option<External<f32>>,
 }
 
 impl Memories {
     /// A batch that writes to it.
     fn batch(self, own: hasard_envs::Batch) -> hasard_envs::Batch {
-        let cost_terms = self.cost_terms.map_or_else(|| own.cost_terms.clone(), Buffer::lent);
+        let cost_terms = self.cost_terms.map_or_else(|| own.cost_terms.clone(), Buffer::external);
         hasard_envs::Batch {
-            observations: Buffer::lent(self.observations),
-            rewards: Buffer::lent(self.rewards),
-            costs: Buffer::lent(self.costs),
-            terminated: Buffer::lent(self.terminated),
-            truncated: Buffer::lent(self.truncated),
+            observations: Buffer::external(self.observations),
+            rewards: Buffer::external(self.rewards),
+            costs: Buffer::external(self.costs),
+            terminated: Buffer::external(self.terminated),
+            truncated: Buffer::external(self.truncated),
             cost_terms,
             ..own
         }

@@ -35,7 +35,7 @@ pub static RESET_NEEDED: Class = Class::new("ResetNeeded");
 pub static WORLD_PANICKED: Class = Class::new("WorldPanicked");
 pub static CLOSED: Class = Class::new("Closed");
 
-/// The exception that tells an error of the worlds.
+/// The exception for an error of the worlds.
 pub fn raise(py: Python<'_>, error: &EnvError) -> PyErr {
     let class = match error {
         EnvError::UnknownId { .. } => &UNKNOWN_ENVIRONMENT,

@@ -74,9 +74,9 @@ pub fn event_names(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let kinds = HappeningKind::NAMES.iter().zip(0..).map(|(name, i)| (name.to_string(), i));
     let causes = DAMAGE_CAUSES.iter().zip(DamageKind::Sector as i16..);
     let things = ActorKind::all().map(|kind| (format!("{kind:?}"), kind as i16));
-    let told = PyDict::new(py);
-    told.set_item("kinds", dict(kinds.collect())?)?;
-    told.set_item("things", dict(things.collect())?)?;
-    told.set_item("causes", dict(causes.map(|(name, i)| (name.to_string(), i)).collect())?)?;
-    Ok(told)
+    let names = PyDict::new(py);
+    names.set_item("kinds", dict(kinds.collect())?)?;
+    names.set_item("things", dict(things.collect())?)?;
+    names.set_item("causes", dict(causes.map(|(name, i)| (name.to_string(), i)).collect())?)?;
+    Ok(names)
 }

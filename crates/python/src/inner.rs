@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex};
 /// A picture: width, height, channels (1 or 3) and its bytes.
 pub type Drawn = (usize, usize, usize, Vec<u8>);
 
-/// Worlds, and the environments in them for whoever looks at one.
+/// Worlds, and the environments in them for callers that look at one.
 pub struct Inner {
     /// Dropped by hand: a child made by `fork` has none of the threads that its end would wait for.
     worlds: ManuallyDrop<VecEnv>,

@@ -29,7 +29,7 @@ impl SharedEnv {
         }
     }
 
-    /// The environment, for whoever looks at it.
+    /// The environment, for callers that look at it.
     pub fn handle(&self) -> Arc<Mutex<Env>> {
         Arc::clone(&self.env)
     }

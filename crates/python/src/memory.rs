@@ -8,9 +8,10 @@ use pyo3::prelude::*;
 
 /// The memory of an array, kept alive by a reference to it.
 ///
-/// Python code may look at the array while the worlds write to it, as with every array that is lent
-/// to native code; what it then sees is undefined, as `bind` says. No Rust code reads it meanwhile.
-pub struct Lent<T> {
+/// Python code may look at the array while the worlds write to it, as with every array that
+/// native code writes to; what it then sees is undefined, as `bind` says. No Rust code reads it
+/// meanwhile.
+pub struct External<T> {
     start: *mut T,
     length: usize,
     _array: Py<PyAny>,
@@ -18,11 +19,11 @@ pub struct Lent<T> {
 
 // SAFETY: the memory belongs to the array, which lives as long as this value, and does not depend
 // on a thread.
-unsafe impl<T: Send> Send for Lent<T> {}
+unsafe impl<T: Send> Send for External<T> {}
 // SAFETY: as above; shared references only read.
-unsafe impl<T: Sync> Sync for Lent<T> {}
+unsafe impl<T: Sync> Sync for External<T> {}
 
-impl<T> AsRef<[T]> for Lent<T> {
+impl<T> AsRef<[T]> for External<T> {
     fn as_ref(&self) -> &[T] {
         // SAFETY: `bound` has made sure of the length, the alignment and that the values are
         // contiguous.
@@ -30,9 +31,9 @@ impl<T> AsRef<[T]> for Lent<T> {
     }
 }
 
-impl<T> AsMut<[T]> for Lent<T> {
+impl<T> AsMut<[T]> for External<T> {
     fn as_mut(&mut self) -> &mut [T] {
-        // SAFETY: as above; the array is writable, and lent to this value alone.
+        // SAFETY: as above; the array is writable, and this value alone writes to it.
         unsafe { std::slice::from_raw_parts_mut(self.start, self.length) }
     }
 }
@@ -43,7 +44,7 @@ pub fn bound<T: Element>(
     name: &str,
     array: &Bound<'_, PyAny>,
     shape: &[usize],
-) -> PyResult<Lent<T>> {
+) -> PyResult<External<T>> {
     let py = array.py();
     let wanted = numpy::dtype::<T>(py);
     let wrong = |given: String| {
@@ -70,5 +71,9 @@ pub fn bound<T: Element>(
         )));
     }
     let typed = array.cast::<PyArrayDyn<T>>()?;
-    Ok(Lent { start: typed.data(), length: shape.iter().product(), _array: array.clone().unbind() })
+    Ok(External {
+        start: typed.data(),
+        length: shape.iter().product(),
+        _array: array.clone().unbind(),
+    })
 }

@@ -48,7 +48,7 @@ impl Drop for Lease {
 
 /// A writable array over a buffer of the pool; the buffer goes back when nothing refers to the
 /// array any more.
-pub fn lend<'py>(
+pub fn pooled<'py>(
     py: Python<'py>,
     mut buffer: Vec<u8>,
     shape: &[usize],

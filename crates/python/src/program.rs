@@ -104,7 +104,7 @@ pub fn train(
             let heard = Python::attach(|py| {
                 py.check_signals()?;
                 match &callback {
-                    Some(callback) => callback.bind(py).call1((told(py, report)?,))?.is_truthy(),
+                    Some(callback) => callback.bind(py).call1((as_dict(py, report)?,))?.is_truthy(),
                     None => Ok(false),
                 }
             });
@@ -131,10 +131,10 @@ pub fn train(
         return Err(error);
     }
     let (directory, summary) = outcome.map_err(|line| INVALID_OPTION.error(py, line))?;
-    Ok((directory, summary.stopped, told(py, &summary.last)?.unbind()))
+    Ok((directory, summary.stopped, as_dict(py, &summary.last)?.unbind()))
 }
 
 /// A report as a dict.
-fn told<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'py, PyAny>> {
+fn as_dict<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (report.row().to_string(),))
 }

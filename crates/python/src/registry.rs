@@ -77,15 +77,15 @@ pub fn describe<'py>(py: Python<'py>, env_id: &str) -> PyResult<Bound<'py, PyDic
     };
     let terms: Vec<(&str, bool)> =
         id.scenario.cost_terms.iter().map(|term| (term.name, term.counted)).collect();
-    let told = PyDict::new(py);
-    told.set_item("scenario", id.scenario.name())?;
-    told.set_item("id", id.to_string())?;
-    told.set_item("level", id.level)?;
-    told.set_item("cost_terms", terms)?;
-    told.set_item("safety_budget", id.scenario.safety_budget(RuleSet::Paper))?;
-    told.set_item("published_safety_budget", id.scenario.safety_budget(RuleSet::Released))?;
-    told.set_item("max_episode_steps", scenarios::episode_steps(id, RuleSet::Paper, false, 4))?;
-    told.set_item("nvec", space.sizes())?;
-    told.set_item("buttons", names(&space))?;
-    Ok(told)
+    let known = PyDict::new(py);
+    known.set_item("scenario", id.scenario.name())?;
+    known.set_item("id", id.to_string())?;
+    known.set_item("level", id.level)?;
+    known.set_item("cost_terms", terms)?;
+    known.set_item("safety_budget", id.scenario.safety_budget(RuleSet::Paper))?;
+    known.set_item("published_safety_budget", id.scenario.safety_budget(RuleSet::Released))?;
+    known.set_item("max_episode_steps", scenarios::episode_steps(id, RuleSet::Paper, false, 4))?;
+    known.set_item("nvec", space.sizes())?;
+    known.set_item("buttons", names(&space))?;
+    Ok(known)
 }

@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex};
 enum CameBack {
     /// In its own memory.
     Own(hasard_envs::Batch),
-    /// In the caller's: this is what it tells beside the bound arrays.
+    /// In the caller's: this is the rest, which the bound arrays do not hold.
     Bound(hasard_envs::Batch),
 }
 
@@ -95,7 +95,7 @@ impl Worlds {
         });
         result.map_err(|fault| match fault {
             Fault::Env(error @ EnvError::Panicked { .. }) => WORLD_PANICKED.error(py, error.to_string()),
-            // Whoever has a single world has never heard of lanes.
+            // The caller has a single world and has never heard of lanes.
             Fault::Env(error @ EnvError::Action { .. }) if self.facts.lanes == 1 => {
                 INVALID_ACTION.error(py, error.to_string().replacen(" of lane 0", "", 1))
             }
@@ -151,40 +151,40 @@ impl Worlds {
         let slot = self.facts.groups;
         let came_back = self.with(py, |inner| {
             let bound = inner.bound.get_mut(slot).and_then(Option::take);
-            let lent = bound.is_some();
+            let external = bound.is_some();
             let mut batch = bound.unwrap_or_else(|| self.scratch(inner, self.facts.lanes));
             let result = work(inner, &mut batch);
-            if !lent {
+            if !external {
                 return result.map(|()| CameBack::Own(batch));
             }
-            let told = self.keep(inner, slot, batch);
-            result.map(|()| CameBack::Bound(told))
+            let rest = self.keep(inner, slot, batch);
+            result.map(|()| CameBack::Bound(rest))
         })?;
-        self.tell(py, slot, came_back)
+        self.show_slot(py, slot, came_back)
     }
 
     /// Shows what a slot's step brought.
-    fn tell(&self, py: Python<'_>, slot: usize, came_back: CameBack) -> PyResult<Batch> {
+    fn show_slot(&self, py: Python<'_>, slot: usize, came_back: CameBack) -> PyResult<Batch> {
         let lanes = self.facts.lanes_of(slot).map(|lane| lane as i32).collect();
         match came_back {
             CameBack::Own(batch) => self.show(py, batch, lanes),
-            CameBack::Bound(mut told) => {
+            CameBack::Bound(mut rest) => {
                 let arrays = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
                     [slot]
                     .clone_ref(py);
-                Batch::new(py, &mut told, lanes, self.facts.shape, &self.pool, arrays)
+                Batch::new(py, &mut rest, lanes, self.facts.shape, &self.pool, arrays)
             }
         }
     }
 
-    /// Lays a lent batch back and copies what it tells beside the bound arrays.
+    /// Puts a batch of bound memory back and copies the rest, which the bound arrays do not hold.
     fn keep(
         &self,
         inner: &mut Inner,
         slot: usize,
         mut batch: hasard_envs::Batch,
     ) -> hasard_envs::Batch {
-        let told = hasard_envs::Batch {
+        let rest = hasard_envs::Batch {
             statistics: batch.statistics.clone(),
             positions: batch.positions.clone(),
             cost_terms: batch.cost_terms.clone(),
@@ -194,7 +194,7 @@ impl Worlds {
             ..hasard_envs::Batch::default()
         };
         inner.bound[slot] = Some(batch);
-        told
+        rest
     }
 
     /// Whether lanes may be stepped.
@@ -465,12 +465,12 @@ impl Worlds {
         self.with(py, |inner| {
             self.ready(inner, lanes.clone())?;
             let bound = inner.bound.get_mut(group).and_then(Option::take);
-            let lent = bound.is_some();
+            let external = bound.is_some();
             let mut batch = bound.unwrap_or_else(|| self.scratch(inner, lanes.len()));
             (batch.actions, batch.deltas) = (actions, deltas);
             inner.worlds().send(group, batch).map_err(|error| {
                 let kept = inner.worlds().reclaim(group);
-                if lent {
+                if external {
                     inner.bound[group] = kept;
                 }
                 Fault::Env(error)
@@ -505,7 +505,7 @@ impl Worlds {
                 CameBack::Bound(self.keep(inner, group, batch))
             })
         })?;
-        self.tell(py, group, came_back)
+        self.show_slot(py, group, came_back)
     }
 
     /// bind(*, observations, rewards, costs, terminated, truncated, cost_terms=None)
@@ -523,7 +523,7 @@ impl Worlds {
     ///     cost_terms: float32 [num_envs, k], or None.
     ///
     /// Raises:
-    ///     BufferError, which tells the dtype and shape wanted and given; OutOfTurn with a batch
+    ///     BufferError, which names the dtype and shape wanted and given; OutOfTurn with a batch
     ///         under way.
     #[pyo3(signature = (*, observations, rewards, costs, terminated, truncated, cost_terms=None))]
     #[allow(clippy::too_many_arguments, reason = "Python's keyword arguments")]
@@ -540,7 +540,7 @@ impl Worlds {
         let given =
             crate::bind::Given { observations, rewards, costs, terminated, truncated, cost_terms };
         let (memories, arrays) = crate::bind::cut(&self.facts, &given)?;
-        drop(self.with(py, |inner| crate::bind::lend(&self.facts, inner, memories))?);
+        drop(self.with(py, |inner| crate::bind::attach(&self.facts, inner, memories))?);
         let mut bound = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let replaced = std::mem::replace(&mut *bound, arrays);
         drop(bound);

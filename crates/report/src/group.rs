@@ -68,7 +68,7 @@ impl Group {
                 Group { shown: shown.map(|(key, value)| (key.clone(), value.clone())).collect(), runs: kept }
             })
             .collect();
-        tell_apart(&mut groups);
+        distinguish(&mut groups);
         groups
     }
 
@@ -165,7 +165,7 @@ impl Group {
 }
 
 /// Adds, to experiments that would look the same, what they differ in.
-fn tell_apart(groups: &mut [Group]) {
+fn distinguish(groups: &mut [Group]) {
     let seen: Vec<(Config, BTreeMap<String, String>)> =
         groups.iter().map(|group| (group.config().clone(), group.shown.clone())).collect();
     let look = |(config, shown): &(Config, BTreeMap<String, String>)| {
@@ -219,7 +219,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_tells_experiments_apart_is_told() {
+    fn only_what_distinguishes_experiments_is_shown() {
         let run = |seed: u64, extra: &str| {
             let text = format!(
                 "{{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":{seed},\"preset\":\"paper\",\"gamma\":0.9{extra}}}"

@@ -83,17 +83,17 @@ fn kept(folder: &Path) -> Vec<Value> {
 
 fn row(name: &str, header: &Header) -> Option<Value> {
     let outcome = header.outcome.as_ref()?;
-    let told =
+    let has =
         |option: &str, value: &str| header.options.get(option).is_some_and(|given| given == value);
     let rules = header.options.get("rules").map_or(Ok(RuleSet::Paper), |name| name.parse()).ok()?;
-    let budget = if told("hard", "true") {
+    let budget = if has("hard", "true") {
         0.0
     } else {
         header.env.parse::<EnvId>().ok()?.scenario.safety_budget(rules)
     };
     Some(json!({
         "who": header.player, "env": header.env, "return": outcome.episode_return, "cost": outcome.cost, "budget": budget,
-        "within": outcome.cost <= budget, "seed": header.seed, "steps": header.steps, "full": told("full-actions", "true"),
+        "within": outcome.cost <= budget, "seed": header.seed, "steps": header.steps, "full": has("full-actions", "true"),
         "episode": name, "agent": format!("episode:{name}"),
     }))
 }

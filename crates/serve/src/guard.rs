@@ -131,7 +131,7 @@ fn is_address(host: &str) -> bool {
     name == "localhost" || bare.parse::<IpAddr>().is_ok()
 }
 
-/// Compares without telling by its time where the first difference is.
+/// Compares in a time that does not show where the first difference is.
 fn equal(given: &str, token: &str) -> bool {
     given.len() == token.len()
         && given.bytes().zip(token.bytes()).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0

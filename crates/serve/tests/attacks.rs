@@ -51,7 +51,7 @@ fn another_origin_and_another_name_are_refused() {
 }
 
 #[test]
-fn without_the_token_nothing_is_told() {
+fn without_the_token_nothing_is_shown() {
     let address = serve(&folder("token"), Some("letmein12345"));
     for path in [
         "/",

@@ -39,7 +39,7 @@ fn runs_appear_move_and_are_compared() {
     browser.wait("document.querySelectorAll('tbody input:checked').length == 3");
     // Both are alike but for their names.
     browser.wait("document.body.innerText.includes('All settings are equal')");
-    browser.wait("document.querySelector('.told').innerText.includes('(2 seeds)')");
+    browser.wait("document.querySelector('.readout').innerText.includes('(2 seeds)')");
     let progress = |share: &str| {
         browser.wait(&format!(
             "[...document.querySelectorAll('tr.seed progress')].some((bar) => Math.abs(bar.value - {share}) < 1e-6)"
@@ -283,7 +283,7 @@ fn everything_is_reached_by_the_keyboard() {
 
 /// A page whose server dies says so, and goes on when it is back.
 #[test]
-fn a_server_that_is_away_is_told_of_and_comes_back() {
+fn a_server_that_is_away_is_reported_and_comes_back() {
     let Some(browser) = Browser::open(900, 700, false) else { return };
     let folder = folder("chromium-away");
     write_run(&folder, "one", 5);

@@ -66,7 +66,7 @@ fn a_run_says_first_what_it_is_worth() {
     let Some(browser) = Browser::open(1280, 1200, false) else { return };
     let address = served("real-run");
     open_run(&browser, address);
-    // The strip tells the closing evaluation as the run's own file has it.
+    // The strip shows the closing evaluation as the run's own file has it.
     let selected: Value = serde_json::from_str(
         &std::fs::read_to_string(data().join(RUN).join("selected.json")).unwrap(),
     )
@@ -99,7 +99,7 @@ fn a_run_says_first_what_it_is_worth() {
         json!(evaluations)
     );
     browser.wait(&format!("{chart}.querySelector('.selected')"));
-    browser.wait(&format!("{chart}.querySelector('.told').innerText.includes('training') && {chart}.querySelector('.told').innerText.includes('evaluation')"));
+    browser.wait(&format!("{chart}.querySelector('.readout').innerText.includes('training') && {chart}.querySelector('.readout').innerText.includes('evaluation')"));
     browser.wait(
         "document.querySelector('[data-chart=cost_mean] svg').textContent.includes('budget 5')",
     );
@@ -107,7 +107,7 @@ fn a_run_says_first_what_it_is_worth() {
     browser.script(&format!(
         "const svg = {chart}.querySelector('svg'), at = svg.getBoundingClientRect(); svg.dispatchEvent(new PointerEvent('pointermove', {{ clientX: at.left + 200, clientY: at.top + 50, pointerId: 1 }}))"
     ));
-    browser.wait("[...document.querySelectorAll('.told')].every((told) => /^at \\d/.test(told.innerText)) && new Set([...document.querySelectorAll('.told')].map((told) => told.firstChild.textContent)).size == 1");
+    browser.wait("[...document.querySelectorAll('.readout')].every((one) => /^at \\d/.test(one.innerText)) && new Set([...document.querySelectorAll('.readout')].map((one) => one.firstChild.textContent)).size == 1");
     browser.wait("document.querySelectorAll('svg.chart path.pointer').length >= document.querySelectorAll('svg.chart').length");
     // What differs from the preset stands first, how often it was evaluated among it, and nothing
     // that does not differ; all others are folded away below.
@@ -116,7 +116,16 @@ fn a_run_says_first_what_it_is_worth() {
     browser.wait(&format!(
         "{rows}.every((row) => row.cells.length == 3 && row.cells[1].innerText != row.cells[2].innerText)"
     ));
-    browser.wait("document.querySelectorAll('#settings details tbody tr').length > 50");
+    // What is folded away is as in the preset, but for what every run has of its own.
+    let folded = "[...document.querySelectorAll('#settings details tbody tr')]";
+    browser.wait(&format!("{folded}.length > 50"));
+    let differ = browser.script(&format!(
+        "return {folded}.filter((row) => row.cells[1].textContent != row.cells[2].textContent).map((row) => row.querySelector('code').textContent)"
+    ));
+    let own = ["version", "seed", "frames", "device", "learning.threads", "sampling.samplers"];
+    for name in differ.as_array().unwrap() {
+        assert!(own.contains(&name.as_str().unwrap()), "{name} is folded away: {differ}");
+    }
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 

@@ -57,7 +57,7 @@ pub struct Summary {
 
 /// Runs jobs, `parallel` processes of `program` at a time: finished ones are skipped, unfinished
 /// ones resumed. A job that fails does not stop the others. What a process prints goes to the job's
-/// log. `tell` hears of every event.
+/// log. `report` hears of every event.
 ///
 /// Several processes share the cores out: each is given its number of threads, unless its job
 /// chooses one. Otherwise every one of them would take all cores, and they would wait for each
@@ -69,7 +69,7 @@ pub fn run_jobs(
     jobs: &[Job],
     parallel: usize,
     stop: Stop<'_>,
-    tell: impl Fn(usize, &Event) + Sync,
+    report: impl Fn(usize, &Event) + Sync,
 ) -> Summary {
     let parallel = parallel.clamp(1, jobs.len().max(1));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -82,8 +82,8 @@ pub fn run_jobs(
                 while !stop.soon.load(Ordering::SeqCst) {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(job) = jobs.get(index) else { break };
-                    let event = run_one(program, job, share, stop, |event| tell(index, event));
-                    tell(index, &event);
+                    let event = run_one(program, job, share, stop, |event| report(index, event));
+                    report(index, &event);
                     let mut summary =
                         summary.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                     match event {
@@ -140,7 +140,7 @@ fn run_one(
     job: &Job,
     share: Option<usize>,
     stop: Stop<'_>,
-    tell: impl Fn(&Event),
+    report: impl Fn(&Event),
 ) -> Event {
     let evaluated = |event: Event| match evaluate(program, job, stop) {
         // It is still wanted: the caller stopped it.
@@ -163,7 +163,7 @@ fn run_one(
             return Event::Failed(format!("cannot write {}: {error}", job.log().display()));
         }
     };
-    tell(&Event::Started(state));
+    report(&Event::Started(state));
     let began = Instant::now();
     let status = run(program, &arguments, out, error, stop);
     match (status, job.state()) {

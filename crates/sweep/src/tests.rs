@@ -310,10 +310,10 @@ fn a_sweep_that_is_stopped_leaves_no_process() {
         })
     };
     let events = Mutex::new(Vec::new());
-    let tell = |job: usize, event: &Event| events.lock().unwrap().push((job, event.clone()));
+    let note = |job: usize, event: &Event| events.lock().unwrap().push((job, event.clone()));
     let summary = std::thread::scope(|scope| {
         let sweep =
-            scope.spawn(|| run_jobs(&program, &jobs, 2, Stop { soon: &soon, now: &now }, tell));
+            scope.spawn(|| run_jobs(&program, &jobs, 2, Stop { soon: &soon, now: &now }, note));
         assert!(wait(&|| begun(&jobs[0]) && begun(&jobs[1])));
         soon.store(true, Ordering::SeqCst);
         assert!(

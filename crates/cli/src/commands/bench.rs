@@ -109,14 +109,14 @@ fn learn(args: &BenchArgs) -> Outcome {
         threads.iter().flat_map(|threads| families.iter().map(move |kernels| (*threads, *kernels)))
     {
         (config.learning.threads, config.sampling.samplers) = (threads, threads);
-        let mut told = |round| {
+        let mut on_round = |round| {
             if !args.json {
                 note!("{kernels}, {threads} thread(s): round {round} of {rounds}");
             }
         };
         let seconds = args.seconds / rounds as f64;
-        let measured =
-            measure(kernels, &config, &make, rounds, seconds, &mut told).map_err(Failure::bad)?;
+        let measured = measure(kernels, &config, &make, rounds, seconds, &mut on_round)
+            .map_err(Failure::bad)?;
         report(args, &config, &measured)?;
     }
     Ok(())

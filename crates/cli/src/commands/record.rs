@@ -148,7 +148,7 @@ pub fn run(args: &RecordArgs) -> Outcome {
     if let Some(recorder) = recorder {
         recorder.finish(env).write(&args.out).map_err(Failure::bad)?;
     }
-    tell(env, args.json, Some(&args.out), film)
+    finish(env, args.json, Some(&args.out), film)
 }
 
 /// `hasard record FILE.episode`: a recorded episode as a film.
@@ -168,7 +168,7 @@ fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions)
     }
     let mut replay = open(file, looks)?;
     let film = play_out(&mut replay, &args.out, looks.size, &args.film, args.steps)?;
-    tell(replay.stage().env(), args.json, Some(&args.out), Some(film))
+    finish(replay.stage().env(), args.json, Some(&args.out), Some(film))
 }
 
 /// Runs `hasard replay`.
@@ -203,15 +203,15 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
             let kinds = settings::views(View::Rgb, &args.film.beside);
             let mut views = Views::new(replay.stage(), size, &kinds).map_err(Failure::bad)?;
             hasard_media::png::write(&views.draw(replay.stage()), out).map_err(Failure::bad)?;
-            return tell(replay.stage().env(), args.json, Some(out), None);
+            return finish(replay.stage().env(), args.json, Some(out), None);
         }
         (Some(out), _) => {
             let film = play_out(&mut replay, out, size, &args.film, None)?;
-            tell(replay.stage().env(), args.json, Some(out), Some(film))?;
+            finish(replay.stage().env(), args.json, Some(out), Some(film))?;
         }
         _ => {
             while replay.tic() {}
-            tell(replay.stage().env(), args.json, None, None)?;
+            finish(replay.stage().env(), args.json, None, None)?;
         }
     }
     replay.difference().map_or(Ok(()), |difference| Err(Failure::Negative(difference)))
@@ -260,8 +260,8 @@ fn play_out(
     Ok(film)
 }
 
-/// Ends the film, if there is one, and tells how the episode went.
-fn tell(env: &Env, as_json: bool, out: Option<&Path>, film: Option<Film>) -> Outcome {
+/// Ends the film, if there is one, and prints how the episode went.
+fn finish(env: &Env, as_json: bool, out: Option<&Path>, film: Option<Film>) -> Outcome {
     let film = film.map(Film::finish).transpose().map_err(Failure::bad)?;
     let episode = env.episode();
     let file = out.map(|out| out.display().to_string());

@@ -110,10 +110,12 @@ pub fn settings(
             pointers.iter().map(move |pointer| (flag.clone(), (*pointer).to_string()))
         })
         .collect();
+    // A card is asked for all worlds at once, the processor's threads each have a share.
     if args.device != saved.device {
-        // A card is asked for all worlds at once, the processor's threads each have a share.
         let dealt = ["/sampling/samplers", "/sampling/world_threads"];
         places.extend(dealt.map(|pointer| ("--device".into(), pointer.into())));
+    } else if args.device != "cpu" && given("threads") {
+        places.push(("--threads".into(), "/sampling/world_threads".into()));
     }
     for text in &args.set {
         let name = text.split('=').next().unwrap_or_default();
@@ -213,6 +215,13 @@ mod tests {
             assert_eq!(changes, expected, "{changed}");
             saved.resumed_with(&changes, 4096).unwrap();
         }
+        let on_a_card = configuration(&train(&format!("{began} --device vulkan")).0).unwrap();
+        let (args, typed) =
+            train("hasard train RemedyRushLevel1-v0 --resume --out run --threads 6");
+        assert_eq!(
+            settings(&args, &typed, &on_a_card, Path::new("run")).unwrap(),
+            ["learning.threads=6", "sampling.world_threads=6"]
+        );
         for (wrong, named) in [
             ("--algo PPOLag", "--algo: the run in run has \"PPOPID\", not \"PPOLag\""),
             ("--preset paper", "--preset: the run in run has \"quick\", not \"paper\""),

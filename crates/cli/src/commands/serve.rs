@@ -8,8 +8,8 @@ use std::path::PathBuf;
 /// Runs the command.
 #[cfg(feature = "serve")]
 pub fn run(args: &ServeArgs) -> Outcome {
-    // Without folders `runs` is waited for: the first training makes it. A folder that was named is
-    // meant.
+    // Without folders `runs` is waited for: the first training makes it. A folder that was named
+    // must exist.
     let (tasks, runs): (Vec<PathBuf>, Vec<PathBuf>) = args
         .runs
         .iter()

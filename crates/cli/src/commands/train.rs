@@ -35,7 +35,7 @@ pub struct Begun {
     options: EnvOptions,
 }
 
-/// What the words of the command begin; `typed` tells which flags were given and which have their
+/// What the words of the command begin; `typed` says which flags were given and which have their
 /// default.
 pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
     let algorithm: AlgorithmKind = args.algo.parse().map_err(Failure::bad)?;
@@ -94,18 +94,18 @@ impl Begun {
     /// Trains, and keeps the pictures of the map beside what is learned. Gives the run's directory
     /// and how it ended.
     pub fn train(self, team: &Team, hooks: &mut Hooks<'_>) -> Result<(PathBuf, Summary), Failure> {
-        self.train_told(team, hooks, |_| {})
+        self.train_with(team, hooks, |_| {})
     }
 
-    /// The same, telling once when the directory is the run's own: when the first worlds are made.
-    fn train_told(
+    /// The same; calls `begins` when the directory is the run's own: at the first worlds made.
+    fn train_with(
         self,
         team: &Team,
         hooks: &mut Hooks<'_>,
         begins: impl Fn(&Begun),
     ) -> Result<(PathBuf, Summary), Failure> {
         let (mut drawn, mut failed_drawing) = (false, None);
-        let told = std::cell::Cell::new(false);
+        let called = std::cell::Cell::new(false);
         let report = &mut *hooks.report;
         let mut hear = |row: &Report| {
             // Not before: the directory is the run's own only once it has begun.
@@ -117,7 +117,7 @@ impl Begun {
             report(row);
         };
         let make = |env: &EnvConfig, worlds| {
-            if !told.replace(true) {
+            if !called.replace(true) {
                 begins(&self);
             }
             env.worlds(&self.options, worlds)
@@ -132,7 +132,7 @@ impl Begun {
     }
 }
 
-/// Runs the command, telling the terminal.
+/// Runs the command, reporting to the terminal.
 pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     let begun = begin(args, typed)?;
     interrupt::behave(Manner::Patient);
@@ -152,7 +152,7 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     };
     let mut warn = |text: String| progress.print(&format!("hasard: {text}"));
     let mut hooks = Hooks { stop: &interrupt::STOP, report: &mut hear, warn: &mut warn };
-    let (directory, summary) = begun.train_told(&Team::default(), &mut hooks, |begun| {
+    let (directory, summary) = begun.train_with(&Team::default(), &mut hooks, |begun| {
         if progress.is_shown() {
             describe(&begun.config, &begun.directory);
             // What keeps it from being measured keeps the run from beginning, which says so.

@@ -144,7 +144,7 @@ fn crossing(p: &Piece, q: &Piece) -> Option<Point> {
     Some((at(p.a.0, along_p.0), at(p.a.1, along_p.1)))
 }
 
-/// The outlines of polygons after cutting, for telling which polygon lies uppermost at a place.
+/// The outlines of polygons after cutting, for finding which polygon lies uppermost at a place.
 pub(super) struct Regions {
     outlines: Vec<Outline>,
 }

@@ -11,7 +11,7 @@ const CELL_LIMIT: u64 = 1 << 14;
 
 /// For each cell the child of the tree that holds all of it. Most cells lie in one leaf or near it,
 /// so that finding the leaf of a point takes a step or two instead of the whole way from the root,
-/// each a branch that cannot be foretold.
+/// each a branch that cannot be predicted.
 #[derive(Clone, Debug, Default)]
 pub struct Locator {
     /// South-west corner of the first cell, raw.

@@ -2,7 +2,7 @@
 //! them.
 
 /// Sector: a light that gleams every 64 tics and is dark between; when, the lowest six bits of the
-/// sector's light tell.
+/// sector's light say.
 pub const PHASED: i32 = 1;
 /// Sector: the start of a row of neighbouring sectors along which a gleam runs.
 pub const SEQUENCE_START: i32 = 2;

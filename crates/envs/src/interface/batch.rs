@@ -7,7 +7,7 @@ use crate::interface::step::CostTerm;
 /// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the
 /// caller and handed over for the time of a step, so that nothing is copied. Made by
 /// [`crate::VecEnv::batch`] with every buffer as long as it must be; any output may be replaced by
-/// memory of the caller's ([`Buffer::lent`]).
+/// memory of the caller's ([`Buffer::external`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Batch {
     /// In: categorical sub-actions, `[lanes, groups]`.

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn spoiled_files_are_told_in_a_line() {
+    fn spoiled_files_are_refused_in_a_line() {
         let whole =
             archive(&[("sprites/rsmka0.png", &[7; 500]), ("sprites/rsmkb0.png", &[8; 500])]);
         for at in 0..whole.len() {

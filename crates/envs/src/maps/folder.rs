@@ -27,9 +27,9 @@ pub struct Maps {
     /// The IWAD that their pictures are laid over.
     iwad: Option<PathBuf>,
     /// Gets a line about what is left out.
-    tell: Option<fn(&str)>,
+    report: Option<fn(&str)>,
     /// Lines that it got already.
-    told: Arc<Mutex<BTreeSet<String>>>,
+    reported: Arc<Mutex<BTreeSet<String>>>,
 }
 
 /// A map as its file has it.
@@ -52,16 +52,16 @@ impl Maps {
         Maps {
             place: place.to_owned(),
             iwad: iwad.map(Path::to_owned),
-            tell: None,
-            told: Arc::default(),
+            report: None,
+            reported: Arc::default(),
         }
     }
 
     /// The same, saying of each map that is read what its file holds that is not played or drawn as
     /// it says: one line, once.
     #[must_use]
-    pub fn telling(self, tell: fn(&str)) -> Maps {
-        Maps { tell: Some(tell), ..self }
+    pub fn reporting_to(self, report: fn(&str)) -> Maps {
+        Maps { report: Some(report), ..self }
     }
 
     /// Reads the map of an environment.
@@ -104,11 +104,11 @@ impl Maps {
             None => None,
         };
         let name = shown(&file);
-        if let Some(tell) = self.tell
+        if let Some(report) = self.report
             && !left_out.is_empty()
-            && self.told.lock().is_ok_and(|mut told| told.insert(name.clone()))
+            && self.reported.lock().is_ok_and(|mut lines| lines.insert(name.clone()))
         {
-            tell(&format!("{name}: left out: {}", left_out.join(", ")));
+            report(&format!("{name}: left out: {}", left_out.join(", ")));
         }
         Ok(LevelFile { name, source, assets, left_out })
     }

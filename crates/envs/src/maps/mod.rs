@@ -15,5 +15,5 @@ mod own_task;
 pub use auto::{ask, find_iwad, find_maps};
 pub use engine_file::pictures_beside;
 pub use folder::{LevelFile, Maps};
+pub use own_task::report_tasks_to;
 pub(crate) use own_task::say_of_task;
-pub use own_task::tell_of_tasks;

@@ -92,7 +92,7 @@ impl OwnRules {
     }
 
     /// What happened is put before the rules of its kind that `asked` picks.
-    fn tell(
+    fn dispatch(
         &mut self,
         program: &Program,
         occasion: Occasion,
@@ -196,7 +196,7 @@ impl OwnRules {
         while next < self.changes.len() {
             let Change { counter, before, after } = self.changes[next];
             next += 1;
-            self.tell(program, Occasion::Counter, 1.0, world, outcome, |trigger| {
+            self.dispatch(program, Occasion::Counter, 1.0, world, outcome, |trigger| {
                 matches!(trigger, Trigger::Counter { counter: of, reaches } if of == counter && before < reaches && after >= reaches)
             });
         }
@@ -212,7 +212,7 @@ impl OwnRules {
             let player = world.players[0].actor;
             match event {
                 Event::PickedUp { kind, tid, .. } => {
-                    self.tell(
+                    self.dispatch(
                         program,
                         Occasion::Pickup,
                         1.0,
@@ -225,7 +225,7 @@ impl OwnRules {
                 Event::Hurt { victim, amount, by, .. } if victim == player => {
                     let zones = self.zones;
                     let floor = by == hasard_engine::world::DamageKind::Sector;
-                    self.tell(
+                    self.dispatch(
                         program,
                         Occasion::Damage,
                         f64::from(amount),
@@ -244,7 +244,7 @@ impl OwnRules {
                     else {
                         continue;
                     };
-                    self.tell(
+                    self.dispatch(
                         program,
                         Occasion::Hit,
                         f64::from(amount),
@@ -254,11 +254,11 @@ impl OwnRules {
                     );
                 }
                 Event::Died { victim, .. } if victim == player => {
-                    self.tell(program, Occasion::Death, 1.0, world, outcome, |_| true);
+                    self.dispatch(program, Occasion::Death, 1.0, world, outcome, |_| true);
                 }
                 Event::Died { kind, tid, source, .. } => {
                     if source == Some(player) {
-                        self.tell(
+                        self.dispatch(
                             program,
                             Occasion::Kill,
                             1.0,
@@ -272,10 +272,10 @@ impl OwnRules {
                 Event::Landed { .. } => {
                     let fallen =
                         world.get(player).map_or(0.0, |body| (self.peak - body.z).to_f64());
-                    self.tell(program, Occasion::Land, fallen, world, outcome, |_| true);
+                    self.dispatch(program, Occasion::Land, fallen, world, outcome, |_| true);
                 }
                 Event::Fired { .. } => {
-                    self.tell(program, Occasion::Shot, 1.0, world, outcome, |_| true)
+                    self.dispatch(program, Occasion::Shot, 1.0, world, outcome, |_| true)
                 }
                 _ => {}
             }
@@ -309,7 +309,7 @@ impl OwnRules {
         let before = std::mem::replace(&mut self.zones, zones);
         if before != zones {
             let (come, gone) = (zones & !before, before & !zones);
-            self.tell(
+            self.dispatch(
                 program,
                 Occasion::Leave,
                 1.0,
@@ -317,7 +317,7 @@ impl OwnRules {
                 outcome,
                 |trigger| matches!(trigger, Trigger::Leave(zone) if gone >> zone & 1 == 1),
             );
-            self.tell(
+            self.dispatch(
                 program,
                 Occasion::Enter,
                 1.0,
@@ -334,10 +334,10 @@ impl OwnRules {
         let (jumping, using, on_ground) =
             (player.jump_tics < 0, player.buttons.any(Buttons::USE), player.on_ground);
         if jumping && !std::mem::replace(&mut self.jumping, jumping) {
-            self.tell(program, Occasion::Jump, 1.0, world, outcome, |_| true);
+            self.dispatch(program, Occasion::Jump, 1.0, world, outcome, |_| true);
         }
         if using && !std::mem::replace(&mut self.using, using) {
-            self.tell(program, Occasion::Use, 1.0, world, outcome, |_| true);
+            self.dispatch(program, Occasion::Use, 1.0, world, outcome, |_| true);
         }
         (self.jumping, self.using) = (jumping, using);
         if let Some(body) = world.get(world.players[0].actor) {
@@ -345,7 +345,7 @@ impl OwnRules {
         }
         if program.has(Occasion::In) {
             let zones = self.zones;
-            self.tell(
+            self.dispatch(
                 program,
                 Occasion::In,
                 1.0,
@@ -386,7 +386,7 @@ impl OwnRules {
             _ => tic >= first && (tic - first).is_multiple_of(every),
         };
         if program.has(Occasion::Timer) {
-            self.tell(
+            self.dispatch(
                 program,
                 Occasion::Timer,
                 1.0,
@@ -439,7 +439,7 @@ impl Rules for OwnRules {
         if world.tic == 0 {
             self.open(&program, world);
             self.look_around(&program, world, outcome);
-            self.tell(&program, Occasion::Start, 1.0, world, outcome, |_| true);
+            self.dispatch(&program, Occasion::Start, 1.0, world, outcome, |_| true);
         }
         self.read_events(&program, world, outcome);
         self.look_around(&program, world, outcome);

@@ -1,12 +1,12 @@
-//! The hand-over of a batch to whoever steps its lanes, and back: the only unsafe code of this
-//! crate.
+//! The hand-over of a batch to the threads that step its lanes, and back: the only unsafe code of
+//! this crate.
 //!
 //! Why unsafe: several threads step disjoint lanes and write disjoint parts of the same contiguous
 //! buffers, which the borrow checker cannot see. The invariants that make it sound:
 //! 1. A slot is `IDLE` (its contents belong to the owner) or `BUSY` (they belong to those who claim
 //!    lanes); only [`Slot::give`] and [`Slot::take`] change that, and `take` succeeds only after
 //!    every lane has been claimed and done.
-//! 2. The slot's counter hands out each lane of a batch once. It holds the number of lanes beside
+//! 2. The slot's counter assigns each lane of a batch once. It holds the number of lanes beside
 //!    the next one, so that a claim is judged by the batch that it falls into, not by the one
 //!    before. A thread touches a lane, and that lane's parts of the batch, only between its claim
 //!    and its being done; so a claim always belongs to the batch that is in the slot.
@@ -32,7 +32,7 @@ const BUSY: u8 = 2;
 /// Looks this often whether the last lanes are done before sleeping: as long as a lane or two take.
 const SPINS: u32 = 2000;
 
-/// The lanes of a batch of worlds, for whoever has claimed one.
+/// The lanes of a batch of worlds, for the threads that claim them.
 pub(super) struct Lanes(Box<[UnsafeCell<Lane>]>);
 
 // SAFETY: a lane is reached by the thread that has claimed it alone, as the invariants above say;
@@ -117,7 +117,7 @@ const fn open(count: usize) -> u64 {
     (count as u64) << 32
 }
 
-/// The lane that a counter's value hands out, and the number of lanes; `None` if all are claimed.
+/// The lane that a counter's value stands for, and the number of lanes; `None` if all are claimed.
 const fn claimed(next: u64) -> Option<(usize, usize)> {
     let (index, count) = ((next & u32::MAX as u64) as usize, (next >> 32) as usize);
     if index < count { Some((index, count)) } else { None }
@@ -181,7 +181,7 @@ impl Slot {
         contents.terminated = Raw::of(&mut batch.terminated);
         contents.truncated = Raw::of(&mut batch.truncated);
         self.state.store(BUSY, Ordering::Release);
-        // From here on lanes are claimed; whoever sees this number sees all of the above.
+        // From here on lanes are claimed; a thread that sees this number sees all of the above.
         self.next.store(open(count), Ordering::Release);
     }
 
@@ -190,7 +190,7 @@ impl Slot {
     }
 
     /// Claims one of the slot's lanes and runs `work` with its number in the batch, the lane, its
-    /// parts of the batch and what is to be done. Tells whether there was a lane left.
+    /// parts of the batch and what is to be done. Returns whether there was a lane left.
     pub fn claim(
         &self,
         lanes: &Lanes,

@@ -10,7 +10,7 @@ pub enum Autoreset {
     SameStep,
     /// The step after starts the next episode, whatever its action; its reward and cost are 0.
     NextStep,
-    /// The lane rests, its flags raised, until it is reset; [`crate::VecEnv::resting`] tells which
+    /// The lane rests, its flags raised, until it is reset; [`crate::VecEnv::resting`] says which
     /// do.
     Disabled,
 }
@@ -45,7 +45,7 @@ pub struct VecOptions {
     pub autoreset: Autoreset,
     /// Which last observations are kept.
     pub final_observations: FinalObservations,
-    /// Every step tells the scenario's statistics, not only an episode's end.
+    /// Every step reports the scenario's statistics, not only an episode's end.
     pub statistics: bool,
     /// What is shown beside observations, to learners.
     pub insight: Insight,

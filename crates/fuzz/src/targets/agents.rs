@@ -14,8 +14,8 @@ pub const AGENT: Target = Target {
         config.evaluation.every = Some(config.frames);
         (config.evaluation.episodes, config.evaluation.confirming_episodes) = (1, Some(1));
         config.constraints[0].budget = 1000.0;
-        vec![of_a_run("handed-out", config, |run| {
-            export(run).expect("the sample run hands out an agent")
+        vec![of_a_run("export", config, |run| {
+            export(run).expect("the sample run exports an agent")
         })]
     },
     words: &[

@@ -21,7 +21,7 @@ pub struct Target {
     pub words: &'static [&'static str],
     /// Makes checksums fit again, as an attacker would.
     pub repair: fn(Vec<u8>) -> Vec<u8>,
-    /// Reads an input and uses what was read; tells whether it was accepted. May panic only where
+    /// Reads an input and uses what was read; says whether it was accepted. May panic only where
     /// there is a fault.
     pub run: fn(&[u8]) -> bool,
     /// Bytes that it may hold at a time, beside 64 for each of the input.

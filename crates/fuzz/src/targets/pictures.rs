@@ -33,7 +33,7 @@ pub(super) fn use_pictures(set: &Assets) {
         let size = usize::from(image.width) * usize::from(image.height);
         image.pixels.len() == size && image.mask.as_ref().is_none_or(|mask| mask.len() == size)
     };
-    assert!(set.images.iter().all(sound), "a picture has not the pixels that its size tells of");
+    assert!(set.images.iter().all(sound), "a picture has not the pixels of its size");
     let count = set.images.len() as u32;
     let exists = |first: u32, frames: u8| {
         first.checked_add(u32::from(frames)).is_some_and(|end| end <= count)

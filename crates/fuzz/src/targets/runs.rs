@@ -4,7 +4,7 @@ use super::{Target, assert_presentable, nothing_to_repair};
 use hasard_report::run::{Config, parse_heatmaps, parse_metrics, read_episode_lines};
 use std::path::Path;
 
-/// The text files of a run: the first byte tells which.
+/// The text files of a run: the first byte says which.
 pub const RUN: Target = Target {
     name: "run",
     samples: || {

@@ -122,7 +122,7 @@ pub enum Multipliers {
 }
 
 impl Multipliers {
-    /// Told what each constraint costs.
+    /// Updates them by what each constraint costs.
     pub fn update(&mut self, signals: &[Signal]) {
         match self {
             Multipliers::Lagrange(all) => {

@@ -340,6 +340,6 @@ mod tests {
         };
         let (rest, all) = (squares(&back, &b), squares(&b, &vec![0.0; count]));
         assert!(rest < 1e-3 * all, "{rest} of {all}");
-        assert!(squares(&back, &x.product) < 1e-3 * all, "what is told of the product");
+        assert!(squares(&back, &x.product) < 1e-3 * all, "the product that is reported");
     }
 }

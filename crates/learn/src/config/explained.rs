@@ -70,15 +70,15 @@ pub fn nearest(text: &str) -> Option<String> {
     let name = SHORT
         .iter()
         .find(|(short, _)| *short == name)
-        .map_or(name.clone(), |(_, meant)| (*meant).to_string());
+        .map_or(name.clone(), |(_, setting)| (*setting).to_string());
     (found <= 1 + last(text).len() / 3).then_some(name)
 }
 
 /// The setting of exactly a name, which may be its last part alone or what other programs call it.
 #[must_use]
 pub fn named(text: &str) -> Option<String> {
-    if let Some((_, meant)) = SHORT.iter().find(|(short, _)| *short == text) {
-        return Some((*meant).to_string());
+    if let Some((_, setting)) = SHORT.iter().find(|(short, _)| *short == text) {
+        return Some((*setting).to_string());
     }
     settings()
         .into_iter()

@@ -59,7 +59,7 @@ impl OwnScenario {
         self.0
     }
 
-    /// What to tell if the file at its place is another by now; `None` if it is the same or gone.
+    /// What to say if the file at its place is another by now; `None` if it is the same or gone.
     #[must_use]
     pub fn changed(self) -> Option<String> {
         own::changed(self.0, "the run began", "run")

@@ -312,13 +312,13 @@ mod tests {
         let changed = config
             .resumed_with(&all(&["seed=9", "learning.rate=1e-4", "frames=5000000"]), 4096)
             .unwrap();
-        let told: Vec<String> = changed
+        let changes: Vec<String> = changed
             .changes
             .iter()
             .map(|one| format!("{} {} {}", one.setting, one.from, one.to))
             .collect();
         assert_eq!(
-            told,
+            changes,
             [
                 "frames 10000000 5000000",
                 "learning.final_rate 0.0001 null",
@@ -371,9 +371,9 @@ mod tests {
                     && longer.progress(20_000_000) == 1.0
             );
             assert_eq!((longer.extended_from(), run.extended_from()), (Some(10_000_000), None));
-            let told: Vec<&str> =
+            let changes: Vec<&str> =
                 longer.changes.iter().map(|change| change.setting.as_str()).collect();
-            assert_eq!(told, ["frames"]);
+            assert_eq!(changes, ["frames"]);
         }
         let shorter = begun.resumed_with(&all(&["frames=7000000"]), 5_000_000).unwrap();
         assert_eq!(

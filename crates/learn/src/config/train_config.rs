@@ -211,7 +211,7 @@ impl TrainConfig {
         for constraint in &self.constraints {
             check_number("a budget", constraint.budget)?;
         }
-        // Ids that are not registered, such as those of tests, tell when their worlds are made.
+        // Ids that are not registered, such as those of tests, fail when their worlds are made.
         if let Some(terms) = self.env.cost_terms()? {
             find_terms(terms, &self.constraints)?;
         }

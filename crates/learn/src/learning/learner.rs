@@ -374,7 +374,7 @@ impl Learner {
         Ok(())
     }
 
-    /// Tells the learner that parameters or statistics were replaced from outside.
+    /// Notes that parameters or statistics were replaced from outside.
     pub fn replaced(&mut self) {
         self.stale.fill(true);
         self.stale_pixels = true;

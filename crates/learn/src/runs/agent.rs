@@ -438,7 +438,7 @@ impl Agent {
         self.watched
     }
 
-    /// Tells what a step cost in a lane, in all and by cost terms; agents that watch their budget
+    /// Notes what a step cost in a lane, in all and by cost terms; agents that watch their budget
     /// need it, and watch what they watched while they learned.
     pub fn observe_cost(&mut self, lane: usize, cost: f64, terms: &[f64]) {
         let watched = self.watched.and_then(|term| terms.get(term).copied()).unwrap_or(cost);

@@ -5,7 +5,7 @@
 //! codes are whole numbers from `-m` to `m`, and a weight is its code times `scale / m`. Small
 //! tensors take eight bits a code. So do large ones where the file stays within `LIMIT`; otherwise
 //! four, two codes a byte. Statistics of pixels take sixteen bits. What is lost is about what a
-//! step of training changes; what the agent is worth with it, `hasard eval FILE` tells.
+//! step of training changes; what the agent is worth with it, `hasard eval FILE` shows.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
@@ -56,7 +56,7 @@ pub struct AgentFile {
     /// What the file says of it.
     pub card: Card,
     /// Codes and scales by the names of the tensors; how many weights they stand for, the network's
-    /// shape tells.
+    /// shape says.
     codes: HashMap<String, (Vec<u8>, Vec<f32>)>,
     pixel_mean: Vec<f64>,
     pixel_variance: Vec<f64>,

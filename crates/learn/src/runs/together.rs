@@ -1,4 +1,4 @@
-//! A run of several workers: what the first tells the others, and what those do.
+//! A run of several workers: what the first sends the others, and what those do.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -22,8 +22,8 @@ pub struct Word {
 }
 
 impl Word {
-    /// Tells the others.
-    pub fn tell(self, team: &Team) -> Result<(), LearnError> {
+    /// Sends it to the others.
+    pub fn send(self, team: &Team) -> Result<(), LearnError> {
         team.hear_first(vec![u8::from(self.over), u8::from(self.save)]).map(drop)
     }
 
@@ -75,7 +75,7 @@ fn alike(team: &Team, config: &TrainConfig) -> Result<(), LearnError> {
     Ok(())
 }
 
-/// Tells the others what the run is.
+/// Sends the others what the run is.
 pub fn invite(
     team: &Team,
     config: &TrainConfig,
@@ -95,7 +95,7 @@ pub fn invite(
     alike(team, config)
 }
 
-/// What the first worker tells the others.
+/// What the first worker sends the others.
 pub struct Invitation {
     team: Team,
     /// The run's settings.

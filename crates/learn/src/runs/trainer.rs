@@ -29,9 +29,9 @@ use crate::team::Team;
 pub struct Hooks<'a> {
     /// Raised by the caller to end the run cleanly, with a checkpoint.
     pub stop: &'a AtomicBool,
-    /// Told every report.
+    /// Called with every report.
     pub report: &'a mut dyn FnMut(&Report),
-    /// Told what went wrong without ending the run.
+    /// Called with what went wrong without ending the run.
     pub warn: &'a mut dyn FnMut(String),
 }
 
@@ -336,7 +336,7 @@ impl<'a> Trainer<'a> {
             let due = last_checkpoint.elapsed().as_secs_f64()
                 >= self.session.config.reporting.checkpoint_seconds;
             let save = over || (due && writer.keeps_up());
-            Word { over, save }.tell(&self.session.team)?;
+            Word { over, save }.send(&self.session.team)?;
             if save {
                 writer.checkpoint(self.checkpoint(cut_short)?);
                 last_checkpoint = Instant::now();
@@ -378,7 +378,7 @@ impl<'a> Trainer<'a> {
         let counts = self.counts();
         let examined = self.examiner.examine(&mut self.session, counts, stop)?;
         let candidate = examined.as_ref().is_some_and(|(_, candidate)| *candidate);
-        Word { over: false, save: candidate }.tell(&self.session.team)?;
+        Word { over: false, save: candidate }.send(&self.session.team)?;
         if candidate {
             writer.best(self.checkpoint(false)?);
         }
@@ -403,7 +403,7 @@ impl<'a> Trainer<'a> {
         let candidates = self.examiner.candidates.clone();
         let progress = Progress {
             candidates,
-            hand_out: None,
+            sole_candidate: None,
             owes_evaluation: false,
             ..loaded.progress.clone()
         };
@@ -475,7 +475,7 @@ impl<'a> Trainer<'a> {
             updates: self.session.learner.version,
             wall_seconds: self.wall_seconds(),
             candidates: self.examiner.candidates.clone(),
-            hand_out: None,
+            sole_candidate: None,
             owes_evaluation,
             returns: self.session.learner.returns.clone(),
             optimiser_steps: self

@@ -76,7 +76,7 @@ fn every_flipped_bit_and_every_cut_is_noticed() {
 }
 
 #[test]
-fn hostile_files_with_a_fitting_checksum_do_no_harm() {
+fn hostile_files_with_a_fitting_checksum_cause_no_panic() {
     let bytes = human().to_bytes();
     let mut state = 1;
     for round in 0..20_000 {
@@ -126,7 +126,7 @@ fn a_body_that_inflates_without_end_is_cut_short() {
 }
 
 #[test]
-fn the_message_tells_what_to_do() {
+fn the_message_says_what_to_do() {
     let message = |bytes: &[u8]| {
         EpisodeFile::from_bytes(bytes, Path::new("a/b.episode")).unwrap_err().to_string()
     };

@@ -82,7 +82,7 @@ fn the_picture_has_the_colours_of_the_style() {
 }
 
 #[test]
-fn empty_and_immense_figures_do_no_harm() {
+fn empty_and_immense_figures_are_drawn() {
     let empty = line_panel(&LinePanel { size: (300.0, 200.0), ..LinePanel::default() });
     assert!(inline_svg(&empty, "").contains("no report yet"));
     assert!(rasterise(&Drawing::new(1e9, 10.0)).is_none());

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Keys, whole or by their beginning, that say where, when and on what machine a run was made or
-/// what it writes, and so do not tell one experiment from another. (The seed does tell runs apart,
-/// but not experiments: runs that differ in it alone are averaged.)
+/// what it writes, and so do not distinguish experiments. (The seed distinguishes runs, but not
+/// experiments: runs that differ in it alone are averaged.)
 const NOT_IDENTITY: &[&str] = &[
     "seed",
     "out",
@@ -330,12 +330,12 @@ impl Config {
     }
 }
 
-/// Settings that changed when the run was resumed, as the trainer lists them: those that tell
-/// experiments apart go among the options. Gives the first number of frames that was asked for, if
-/// the run went on beyond it.
+/// Settings that changed when the run was resumed, as the trainer lists them: those that
+/// distinguish experiments go among the options. Gives the first number of frames that was asked
+/// for, if the run went on beyond it.
 fn read_changes(value: &Value, flat: &mut BTreeMap<String, String>) -> Option<f64> {
     let mut first = None;
-    let mut told = Vec::new();
+    let mut changes = Vec::new();
     for change in value.as_array().into_iter().flatten() {
         let Some(setting) = change.get("setting").and_then(Value::as_str) else { continue };
         let text = |key: &str| change.get(key).map(plain).unwrap_or_default();
@@ -345,11 +345,11 @@ fn read_changes(value: &Value, flat: &mut BTreeMap<String, String>) -> Option<f6
                 first = Some(from).filter(|from| *from < to);
             }
         } else if !NOT_IDENTITY.iter().any(|beginning| below(setting, beginning)) {
-            told.push(format!("{setting} {} from {} frames on", text("to"), text("frames")));
+            changes.push(format!("{setting} {} from {} frames on", text("to"), text("frames")));
         }
     }
-    if !told.is_empty() {
-        flat.insert("changed".into(), told.join("; "));
+    if !changes.is_empty() {
+        flat.insert("changed".into(), changes.join("; "));
     }
     first
 }
@@ -365,7 +365,7 @@ fn read_constraints(
     flat: &mut BTreeMap<String, String>,
 ) -> Result<Vec<Constraint>, String> {
     let unusable = || "has constraints that are no list of {\"term\", \"budget\"}".to_owned();
-    let mut told = Vec::new();
+    let mut terms = Vec::new();
     let mut constraints = Vec::new();
     for constraint in value.as_array().ok_or_else(unusable)? {
         let budget = constraint
@@ -380,11 +380,11 @@ fn read_constraints(
         });
         match term {
             None => drop(flat.insert("safety_budget".into(), budget)),
-            Some(term) => told.push(format!("{term}:{budget}")),
+            Some(term) => terms.push(format!("{term}:{budget}")),
         }
     }
-    if !told.is_empty() {
-        flat.insert("constraints".into(), told.join(","));
+    if !terms.is_empty() {
+        flat.insert("constraints".into(), terms.join(","));
     }
     Ok(constraints)
 }

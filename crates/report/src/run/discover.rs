@@ -145,12 +145,12 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                 let usual = |key: &str, value: &str| {
                     matches!((key, value), ("hard" | "full-actions", "false") | ("frame-skip", "4"))
                 };
-                let told = header
+                let given = header
                     .options
                     .iter()
                     .filter(|(key, value)| !usual(key, value) && !key.starts_with("scenario"));
                 let options: Vec<String> =
-                    told.map(|(key, value)| format!("{key} {value}")).collect();
+                    given.map(|(key, value)| format!("{key} {value}")).collect();
                 let key = PlayerKey {
                     player: header.player.clone(),
                     env: header.env.clone(),

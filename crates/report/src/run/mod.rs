@@ -167,7 +167,7 @@ impl Run {
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
-    /// Frames a second over the whole run, if its reports tell the time.
+    /// Frames a second over the whole run, if its reports hold the time.
     #[must_use]
     pub fn frames_per_second(&self) -> Option<f64> {
         let last = self.rows.last()?;

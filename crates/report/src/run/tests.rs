@@ -67,7 +67,7 @@ fn what_makes_an_experiment_is_everything_but_machine_and_seed() {
 }
 
 #[test]
-fn the_lessons_of_a_curriculum_are_told_by_their_levels() {
+fn the_lessons_of_a_curriculum_are_listed_by_their_levels() {
     let parse = |lessons: &str| {
         let text = format!(
             "{{\"env\":\"RemedyRushLevel3-v0\",\"algo\":\"PPOPID\",\"seed\":1,\"curriculum\":{lessons}}}"
@@ -230,7 +230,7 @@ fn damped_multipliers_are_called_what_they_are() {
 /// A run of an older version lacks settings that a newer one writes down at their usual values:
 /// the two are one experiment.
 #[test]
-fn settings_at_their_usual_values_tell_nothing_apart() {
+fn settings_at_their_usual_values_distinguish_nothing() {
     let run = |more: &str| {
         let text = format!(
             r#"{{"env":{{"id":"RemedyRushLevel1-v0"}},"algorithm":"PPO","seed":1,"learning":{{"rate":0.1{more}}}}}"#

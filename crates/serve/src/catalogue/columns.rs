@@ -13,7 +13,7 @@ const POINTS: usize = 800;
 const SPARSE: usize = 2;
 /// Bytes that are read at a time: what is beyond is read when it is asked for next.
 const LARGEST_READ: u64 = 64 << 20;
-/// Bytes that are compared: more than a row, which tells the time and so is like no other.
+/// Bytes that are compared: more than a row, which holds the time and so is like no other.
 const SEAM: usize = 4096;
 
 /// Columns as far as the file was read.

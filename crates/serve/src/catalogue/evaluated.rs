@@ -34,12 +34,12 @@ impl Stamped {
 }
 
 /// The selected checkpoint by its closing evaluation; without one, only its frames.
-pub(super) fn told(selected: &Selected, config: &Config) -> Value {
-    let mut told =
+pub(super) fn as_json(selected: &Selected, config: &Config) -> Value {
+    let mut row =
         selected.closing.as_ref().map_or_else(|| json!({}), |closing| evaluation(closing, config));
-    told["frames"] = json!(selected.frames);
-    told["last"] = selected.last.as_ref().map_or(Value::Null, |last| evaluation(last, config));
-    told
+    row["frames"] = json!(selected.frames);
+    row["last"] = selected.last.as_ref().map_or(Value::Null, |last| evaluation(last, config));
+    row
 }
 
 /// Return, the cost of each constraint, and how they stand to the budgets.

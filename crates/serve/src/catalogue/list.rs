@@ -26,8 +26,8 @@ const ALIVE: Duration = Duration::from_secs(90);
 const TAIL: u64 = 32 << 10;
 /// Runs whose columns are kept in memory.
 const KEPT: usize = 200;
-/// What the list tells of a run's last row.
-const TOLD: [&str; 10] = [
+/// What the list shows of a run's last row.
+const LISTED: [&str; 10] = [
     "frames",
     "fps",
     "wall_s",
@@ -203,12 +203,12 @@ impl Catalogue {
         let news = self.runs.iter().filter(|(_, run)| whole || run.change > since);
         let (mut runs, mut experiments) = (Vec::new(), Map::new());
         for (id, run) in news {
-            let mut told = run.told(id);
+            let mut row = run.as_json(id);
             let experiment = run.experiment();
-            told["experiment"] = json!(experiment);
+            row["experiment"] = json!(experiment);
             // Runs that differ in their seed alone share their settings: they are sent once.
             experiments.entry(experiment).or_insert_with(|| json!(run.config.options));
-            runs.push(told);
+            runs.push(row);
         }
         let folders: Vec<String> =
             self.folders.iter().map(|folder| folder.display().to_string()).collect();
@@ -218,17 +218,17 @@ impl Catalogue {
     /// What some runs are worth, in the order of the ids.
     pub fn results_of(&self, ids: &[String]) -> Vec<Value> {
         let known = ids.iter().filter_map(|id| Some((id, self.runs.get(id)?)));
-        let told = known.map(|(id, run)| {
-            let mut told = run.told(id);
-            told["experiment"] = json!(run.experiment());
-            told
+        let rows = known.map(|(id, run)| {
+            let mut row = run.as_json(id);
+            row["experiment"] = json!(run.experiment());
+            row
         });
-        told.collect()
+        rows.collect()
     }
 
     /// What each run ended with lately, for the table of the best.
     pub fn results(&self) -> Vec<Value> {
-        self.runs.iter().map(|(id, run)| run.told(id)).collect()
+        self.runs.iter().map(|(id, run)| run.as_json(id)).collect()
     }
 
     /// A run's columns as far as its file goes now.
@@ -275,9 +275,9 @@ impl Run {
         self.last.get("frames").and_then(Value::as_f64).unwrap_or(0.0)
     }
 
-    fn told(&self, id: &str) -> Value {
+    fn as_json(&self, id: &str) -> Value {
         let config = &self.config;
-        let last: Map<String, Value> = TOLD
+        let last: Map<String, Value> = LISTED
             .iter()
             .filter_map(|name| Some(((*name).to_owned(), self.last.get(*name)?.clone())))
             .collect();
@@ -293,7 +293,7 @@ impl Run {
             "id": id, "settled": self.settled, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
             "budget": config.safety_budget, "preset": config.options.get("preset"), "total": total, "state": state, "last": last,
             "notes": self.notes.as_json(),
-            "evaluation": self.evaluation.found.as_ref().map(|found| evaluated::told(found, config)),
+            "evaluation": self.evaluation.found.as_ref().map(|one| evaluated::as_json(one, config)),
         })
     }
 

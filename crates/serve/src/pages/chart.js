@@ -13,7 +13,7 @@ export class Shared {
   add(chart) { this.charts.push(chart); return chart; }
   clear() { this.charts.forEach((chart) => chart.end()); this.charts = []; }
   draw() { this.charts.forEach((chart) => chart.draw()); }
-  point(x) { this.pointer = x; this.charts.forEach((chart) => chart.tell()); }
+  point(x) { this.pointer = x; this.charts.forEach((chart) => chart.update_readout()); }
 }
 
 // A series: { name, colour, dash, x, y, half, kind: 'line', 'points' or 'thin' }. Thin lines are neither smoothed nor read out.
@@ -21,9 +21,9 @@ export class Chart {
   constructor(shared, { title, unit = '', what = title, note = '', file, onmoment }) {
     Object.assign(this, { shared, title, unit: unit && unit !== what.toLowerCase() ? `${what} (${unit})` : what, file, onmoment, series: [], budgets: [], places: null });
     this.svg = shape('svg', { class: 'chart', role: 'img', tabindex: 0, height: 260, 'aria-label': title });
-    this.told = make('div', { class: 'told' });
+    this.readout = make('div', { class: 'readout' });
     const saves = downloads(title, file, () => standalone(this.svg, title, this.legend()), () => this.rows());
-    this.element = make('figure', { 'data-chart': file }, make('figcaption', {}, make('span', { class: 'row' }, make('b', {}, title), saves), make('span', { class: 'note' }, ...coded(note))), this.svg, this.told);
+    this.element = make('figure', { 'data-chart': file }, make('figcaption', {}, make('span', { class: 'row' }, make('b', {}, title), saves), make('span', { class: 'note' }, ...coded(note))), this.svg, this.readout);
     this.listen();
     this.sized = new ResizeObserver(() => this.draw());
     this.sized.observe(this.svg);
@@ -111,7 +111,7 @@ export class Chart {
     parts.push(text(upright, 0, 0, ink.pale, { 'text-anchor': 'middle', transform: `translate(14 ${(TOP + height - BOTTOM) / 2}) rotate(-90)` }));
     parts.push(this.plot(drawn, x, y, log, ink));
     svg.replaceChildren(...parts);
-    this.tell();
+    this.update_readout();
   }
 
   plot(drawn, x, y, log, ink) {
@@ -152,7 +152,7 @@ export class Chart {
   }
 
   // Lines at the pointer and at the moment of the heatmap, and what the curves are there, in words.
-  tell() {
+  update_readout() {
     if (!this.places) return;
     const { svg, shared, height, places: { x, drawn, whole } } = this;
     svg.querySelectorAll('.pointer').forEach((one) => one.remove());
@@ -174,8 +174,8 @@ export class Chart {
       return make('span', {}, make('b', { 'aria-hidden': 'true', style: `color:${one.colour}` }, one.kind === 'points' ? '● ' : '━ '), `${one.name} ${short(value)}${half}`);
     });
     const where = pointed == null ? 'at the end' : `at ${short(pointed / whole.per)}`;
-    this.told.replaceChildren(...(read.length ? [make('span', {}, where), ...read.slice(0, 8)] : [make('span', {}, 'not reported')]));
-    svg.setAttribute('aria-description', this.told.textContent);
+    this.readout.replaceChildren(...(read.length ? [make('span', {}, where), ...read.slice(0, 8)] : [make('span', {}, 'not reported')]));
+    svg.setAttribute('aria-description', this.readout.textContent);
   }
 }
 

@@ -51,7 +51,7 @@ export async function ask(path) {
 }
 
 // Writes to the server; gives its answer or throws its reason.
-export async function tell(path, body) {
+export async function post(path, body) {
   const answer = await fetch(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) });
   const said = await answer.json();
   if (!answer.ok) throw new Error(said.error ?? answer.statusText);

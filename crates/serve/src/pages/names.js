@@ -16,20 +16,20 @@ export function path_rest(run) {
   return run.name.split('/').filter((part) => !said.includes(part.toLowerCase())).join('/');
 }
 
-// Options that always stand beside an algorithm's name, if a run has them: the most telling first.
-const TOLD = ['preset', 'rules', 'hard', 'full_actions', 'observation', 'constraints', 'safety_budget', 'cost_scale', 'curriculum', 'frame_skip', 'frame_stack'];
+// Options that always stand beside an algorithm's name, if a run has them: what matters most first.
+const LISTED = ['preset', 'rules', 'hard', 'full_actions', 'observation', 'constraints', 'safety_budget', 'cost_scale', 'curriculum', 'frame_skip', 'frame_stack'];
 const word = (name, value) => (name === 'preset' ? value : name === 'rules' ? (value === 'paper' ? '' : `rules ${value}`) : value === 'true' ? name.replaceAll('_', ' ') : `${name.replace(/^.*\./, '').replaceAll('_', ' ')} ${value}`);
 
-// A few words for each experiment: what always stands beside the algorithm, and what tells those apart that would read the same.
+// A few words for each experiment: what always stands beside the algorithm, and what distinguishes those that would read the same.
 export function labels(experiments) {
-  const first = experiments.map(({ options }) => TOLD.filter((name) => options[name] != null).map((name) => word(name, options[name])).filter(Boolean));
+  const first = experiments.map(({ options }) => LISTED.filter((name) => options[name] != null).map((name) => word(name, options[name])).filter(Boolean));
   const look = (k) => `${experiments[k].env} ${experiments[k].algo} ${first[k]}`;
   const alike = new Map();
   experiments.forEach((_, k) => alike.set(look(k), [...(alike.get(look(k)) ?? []), k]));
   return experiments.map((own, k) => {
     const others = alike.get(look(k)).map((at) => experiments[at]);
     const names = [...new Set(others.flatMap(({ options }) => Object.keys(options)))].sort();
-    const differ = others.length < 2 ? [] : names.filter((name) => !TOLD.includes(name) && new Set(others.map(({ options }) => options[name])).size > 1);
+    const differ = others.length < 2 ? [] : names.filter((name) => !LISTED.includes(name) && new Set(others.map(({ options }) => options[name])).size > 1);
     const more = differ.map((name) => word(name, own.options[name] ?? 'not given'));
     if (others.length > 1 && new Set(others.map(({ total }) => total)).size > 1) more.push(`${Intl.NumberFormat('en', { notation: 'compact' }).format(own.total ?? 0)} frames`);
     const shown = [...first[k], ...more.slice(0, 2), ...(more.length > 2 ? [`${more.length - 2} more`] : [])];

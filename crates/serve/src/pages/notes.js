@@ -1,5 +1,5 @@
 // What people say of a run: note, tags, put aside or thrown away. Only where the server was begun with --edit can it be changed.
-import { ask, field, make, tell } from '/dom.js';
+import { ask, field, make, post } from '/dom.js';
 
 export class NotesCard {
   constructor(id) {
@@ -26,7 +26,7 @@ export class NotesCard {
     const aside = make('input', { type: 'checkbox', id: 'aside' });
     aside.checked = archived;
     const send = async (what, done) => {
-      try { const answer = await tell('/api/edit', { id: this.id, ...what }); said.textContent = done(answer); return true; } catch (error) { said.textContent = error.message; return false; }
+      try { const answer = await post('/api/edit', { id: this.id, ...what }); said.textContent = done(answer); return true; } catch (error) { said.textContent = error.message; return false; }
     };
     const save = () => send({ note: text.value, tags: words.value.split(','), archived: aside.checked }, () => 'Saved.');
     const sure = make('span', { class: 'row', hidden: true });

@@ -1,4 +1,4 @@
-// A second agent on the same seed, beside the first: it does what the first is told to.
+// A second agent on the same seed, beside the first: it does what the first is asked to.
 import { make, number } from '/dom.js';
 import { Screen } from '/screen.js';
 

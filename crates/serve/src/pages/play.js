@@ -97,8 +97,8 @@ export function play(main, query) {
     else if (!ended && card.dataset.what === 'end') show('');
     else if (!paused && card.dataset.what === 'keys') show('');
     const over = frame.cost > frame.budget;
-    const told = (name, value, kind = '') => make('span', {}, name, make('b', { class: kind }, value));
-    numbers.replaceChildren(told('time', `${frame.seconds.toFixed(1)} of 60 s`), told('return', number(frame.return)), told('cost of budget', `${number(frame.cost)} of ${number(frame.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'), told('best within', rows.length ? number(rows[0].return) : '–'), told('seed', String(frame.seed)));
+    const entry = (name, value, kind = '') => make('span', {}, name, make('b', { class: kind }, value));
+    numbers.replaceChildren(entry('time', `${frame.seconds.toFixed(1)} of 60 s`), entry('return', number(frame.return)), entry('cost of budget', `${number(frame.cost)} of ${number(frame.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'), entry('best within', rows.length ? number(rows[0].return) : '–'), entry('seed', String(frame.seed)));
     meter.value = frame.budget > 0 ? Math.min(1, (frame.cost / frame.budget) * 0.75) : Number(over);
     if (!ended) words.textContent = paused ? (began ? 'Paused. Click the picture or press Enter to go on.' : 'Click the picture or press Enter to begin. H shows the keys.') : '';
   }

@@ -67,9 +67,9 @@ export function runs(main, query) {
     // A setting that all experiments share chooses nothing.
     const shares = new Map();
     for (const key of keys) for (const [name, value] of Object.entries(options.get(key) ?? {})) shares.set(`${name} = ${value}`, (shares.get(`${name} = ${value}`) ?? 0) + 1);
-    const telling = [...shares].filter(([, share]) => share < keys.length).map(([kind]) => kind).sort();
-    option.replaceChildren(pick_from('option', telling.slice(0, 300)));
-    option.closest('label').hidden = !telling.length;
+    const differing = [...shares].filter(([, share]) => share < keys.length).map(([kind]) => kind).sort();
+    option.replaceChildren(pick_from('option', differing.slice(0, 300)));
+    option.closest('label').hidden = !differing.length;
   }
 
   const picked = () => [...chosen].map((id) => known.get(id)).filter(Boolean).slice(0, CHOSEN);

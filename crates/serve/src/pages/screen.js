@@ -1,4 +1,4 @@
-// A show over a WebSocket: pictures onto canvases, numbers and words to whoever listens. Comes back when the server does.
+// A show over a WebSocket: pictures onto canvases, numbers and words to the given functions. Comes back when the server does.
 export class Screen {
   constructor(path, canvases, { onframe, onwords, onlink }) {
     Object.assign(this, { path, canvases, onframe, onwords, onlink, ended: false });

@@ -28,10 +28,10 @@ export function watch(main, query) {
   const film = make('a', { class: 'button', id: 'film', download: true, title: 'The whole episode as MP4' }, 'Download film');
   const button = (text, title, onclick, more = {}) => make('button', { title, onclick, ...more }, text);
   const pair = new Pair();
-  const tell = (message) => { screen?.ask(message); pair.ask(message); };
+  const send = (message) => { screen?.ask(message); pair.ask(message); };
   const episodes = new Episodes((seed) => { Object.assign(now, { seed, step: '0', paused: '', greedy: '', best: now.agent.startsWith('run:') ? 'true' : '' }); controls(); });
-  const go = button('Pause', 'Space', () => tell({ do: paused || ended ? 'go' : 'pause' }), { class: 'main', id: 'go' });
-  const speed = choose(SPEEDS, '1', (value) => tell({ do: 'speed', value: Number(value) }));
+  const go = button('Pause', 'Space', () => send({ do: paused || ended ? 'go' : 'pause' }), { class: 'main', id: 'go' });
+  const speed = choose(SPEEDS, '1', (value) => send({ do: 'speed', value: Number(value) }));
   speed.setAttribute('aria-label', 'Speed');
   const on = make('input', { type: 'checkbox', id: 'on' });
   const time = new Timeline(jump);
@@ -46,13 +46,13 @@ export function watch(main, query) {
   main.append(make('section', { class: 'card head' }, make('h1', { class: 'unseen' }, 'Watch'), form, link),
     make('section', { class: 'stage' },
       make('div', { class: 'card' }, make('div', { class: 'pair' }, make('figure', {}, canvases.colour, pair.first), pair.element), numbers, time.slide, time.line, time.key,
-        make('div', { class: 'row' }, go, button('+1 frame', '.', () => tell({ do: 'tic' }), { id: 'tic' }), button('−1 action', 'Left arrow', () => jump(step - 1)), button('+1 action', 'Right arrow', () => jump(step + 1)), speed, next,
+        make('div', { class: 'row' }, go, button('+1 frame', '.', () => send({ do: 'tic' }), { id: 'tic' }), button('−1 action', 'Left arrow', () => jump(step - 1)), button('+1 action', 'Right arrow', () => jump(step + 1)), speed, next,
           make('label', { class: 'check' }, on, 'go on with the next seed'), copy, film, copied),
         make('p', { class: 'pale' }, 'Keys: Space plays and pauses, the full stop shows one frame (a game tic), arrows go an action back and on.')),
       make('div', { class: 'card side' }, make('div', { class: 'beside' }, figures.automap, figures.depth, figures.segmented), episodes.element,
         make('h2', {}, 'Policy'), thoughts, make('h2', {}, 'Events'), make('p', { class: 'pale' }, 'Click one to jump to the moment before it.'), time.events)));
 
-  function jump(to) { tell({ do: 'jump', step: Math.max(0, Math.min(to, Number(time.slide.max))) }); }
+  function jump(to) { send({ do: 'jump', step: Math.max(0, Math.min(to, Number(time.slide.max))) }); }
 
   function begin() {
     keepState('watch', now);
@@ -97,14 +97,14 @@ export function watch(main, query) {
     go.textContent = ended ? 'Again' : paused ? 'Play' : 'Pause';
     const over = scene && frame.cost > scene.budget;
     pair.first.textContent = `${names[now.agent] ?? now.agent}: step ${step}, return ${number(frame.return)}, cost ${number(frame.cost)} of ${number(scene?.budget)}${over ? ', over' : ''}${ended ? ', ended' : ''}`;
-    const told = (name, value, kind = '', title = '') => make('span', { title }, name.replaceAll('_', ' '), make('b', { class: kind }, value));
+    const entry = (name, value, kind = '', title = '') => make('span', { title }, name.replaceAll('_', ' '), make('b', { class: kind }, value));
     const terms = (scene?.terms ?? []).length > 1 || (scene?.terms ?? [])[0] !== 'cost' ? scene?.terms ?? [] : [];
     // What the critics expect from here on: in units of returns and costs, where those are known.
     const own = frame.expected?.length, several = (frame.cost_values ?? []).length > 1;
     const unit = own ? 'Discounted sum that the critic expects from here on' : 'What the critic expects from here on, in normalised units: this file does not hold the scale';
-    const critic = (name, k, plain) => told(own ? `expected ${name}` : `${name} value (normalised)`, number(own ? frame.expected[k] : plain), '', unit);
-    numbers.replaceChildren(told('step', String(step)), told('time', `${(frame.tic / 35).toFixed(1)} s`), told('return', number(frame.return)), told('cost of budget', `${number(frame.cost)} of ${number(scene?.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'),
-      ...terms.map((name, k) => told(name, number(frame.terms[k]))), ...(frame.value == null ? [] : [critic('return', 0, frame.value)]), ...(frame.cost_values ?? []).map((value, k) => critic(several ? `cost ${k + 1}` : 'cost', k + 1, value)));
+    const critic = (name, k, plain) => entry(own ? `expected ${name}` : `${name} value (normalised)`, number(own ? frame.expected[k] : plain), '', unit);
+    numbers.replaceChildren(entry('step', String(step)), entry('time', `${(frame.tic / 35).toFixed(1)} s`), entry('return', number(frame.return)), entry('cost of budget', `${number(frame.cost)} of ${number(scene?.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'),
+      ...terms.map((name, k) => entry(name, number(frame.terms[k]))), ...(frame.value == null ? [] : [critic('return', 0, frame.value)]), ...(frame.cost_values ?? []).map((value, k) => critic(several ? `cost ${k + 1}` : 'cost', k + 1, value)));
     think(frame);
     time.at(step);
   }
@@ -154,7 +154,7 @@ export function watch(main, query) {
   }
   const keys = (event) => {
     if (event.target.matches('input,select,button,a') || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.key === ' ') { go.click(); event.preventDefault(); } else if (event.key === '.') tell({ do: 'tic' });
+    if (event.key === ' ') { go.click(); event.preventDefault(); } else if (event.key === '.') send({ do: 'tic' });
     else if (event.key === 'ArrowRight') jump(step + 1);
     else if (event.key === 'ArrowLeft') jump(step - 1);
   };

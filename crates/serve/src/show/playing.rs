@@ -67,7 +67,7 @@ impl Game {
         Ok(())
     }
 
-    /// Ends with nothing when the player is gone, or with a reason to tell.
+    /// Ends with nothing when the player is gone, or with a reason to show.
     fn run(&mut self, line: &mut Line) -> Result<(), Option<String>> {
         let gone = |()| None;
         let space = self.stage.env().action_space();

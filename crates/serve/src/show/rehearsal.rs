@@ -1,5 +1,5 @@
 //! An episode acted out once, without pictures for people: what every step brought is known before
-//! it is shown, so that the time line tells of harm to come, and every step can be jumped to by
+//! it is shown, so that the time line shows harm to come, and every step can be jumped to by
 //! acting the same again.
 
 use super::performer::Performer;
@@ -164,7 +164,7 @@ impl Rehearsal {
     }
 
     /// What is known of the episode from a step on, for the time line.
-    pub fn told_from(&self, first: usize) -> Value {
+    pub fn known_from(&self, first: usize) -> Value {
         let facts = &self.facts[first.min(self.facts.len())..];
         // A term that is measured beside the cost is no harm.
         let kind = |counted: bool| if counted { "harm" } else { "noted" };

@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 const TICS: f64 = 35.0;
 /// Time of a tic that acting ahead may take.
 const AHEAD: Duration = Duration::from_millis(10);
-/// Steps between two tellings of what is known ahead.
-const TELL_EVERY: usize = 25;
+/// Steps between two messages of what is known ahead.
+const SEND_EVERY: usize = 25;
 /// Steps between two moments that are kept to come back to: an episode of 525 has 21, and a jump
 /// acts out 25 steps at most.
 const KEEP_EVERY: usize = 25;
@@ -46,8 +46,8 @@ struct Show<'a> {
     /// Moments of the episode that were passed, by their steps, in order.
     kept: Vec<(usize, Moment)>,
     /// Steps that the viewer knows.
-    told: usize,
-    told_over: bool,
+    sent: usize,
+    sent_over: bool,
     /// The moment has changed since it was drawn.
     fresh: bool,
 }
@@ -74,8 +74,8 @@ impl<'a> Show<'a> {
             paused,
             speed: 1.0,
             kept: Vec::new(),
-            told: 0,
-            told_over: false,
+            sent: 0,
+            sent_over: false,
             fresh: true,
         };
         show.jump(step);
@@ -101,7 +101,7 @@ impl<'a> Show<'a> {
             }
         }
         self.kept.clear();
-        (self.told, self.told_over, self.paused, self.fresh) = (0, false, false, true);
+        (self.sent, self.sent_over, self.paused, self.fresh) = (0, false, false, true);
         line.say(&self.rehearsal.scene())
     }
 
@@ -112,7 +112,7 @@ impl<'a> Show<'a> {
             let time = if self.paused || self.ended() {
                 // Nothing moves: the thread sleeps until somebody asks, or acts ahead if there is
                 // something left.
-                if self.told_over { Duration::from_secs(60) } else { Duration::from_millis(1) }
+                if self.sent_over { Duration::from_secs(60) } else { Duration::from_millis(1) }
             } else {
                 next_tic.saturating_duration_since(Instant::now())
             };
@@ -127,7 +127,7 @@ impl<'a> Show<'a> {
                 ask = line.ask_within(Duration::ZERO)?;
             }
             self.rehearsal.go_on(AHEAD, usize::MAX);
-            self.tell(line)?;
+            self.send(line)?;
             let now = Instant::now();
             if !self.paused && !self.ended() && now >= next_tic {
                 self.tic();
@@ -221,12 +221,12 @@ impl<'a> Show<'a> {
         self.fresh = true;
     }
 
-    /// Tells the viewer what is newly known of the episode.
-    fn tell(&mut self, line: &mut Line) -> Result<(), ()> {
+    /// Sends the viewer what is newly known of the episode.
+    fn send(&mut self, line: &mut Line) -> Result<(), ()> {
         let (steps, over) = (self.rehearsal.steps(), self.rehearsal.over());
-        if steps >= self.told + TELL_EVERY || over && !self.told_over {
-            line.say(&self.rehearsal.told_from(self.told))?;
-            (self.told, self.told_over) = (steps, over);
+        if steps >= self.sent + SEND_EVERY || over && !self.sent_over {
+            line.say(&self.rehearsal.known_from(self.sent))?;
+            (self.sent, self.sent_over) = (steps, over);
         }
         Ok(())
     }

@@ -13,7 +13,7 @@ const rgba = (colour) => { pen.clearRect(0, 0, 1, 1); pen.fillStyle = colour; pe
 const light = (rgb) => rgb.slice(0, 3).map((v) => v / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)).reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
 const ground = (element) => { for (let at = element; at; at = at.parentElement) { const colour = rgba(getComputedStyle(at).backgroundColor); if (colour[3] === 255) return colour; } return [255, 255, 255, 255]; };
 const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-const told = new Set();
+const reported = new Set();
 for (let node = walk.nextNode(); node; node = walk.nextNode()) {
   const element = node.parentElement;
   if (!node.textContent.trim() || !seen(element) || element.closest('option, optgroup, [aria-hidden=true], :disabled')) continue;
@@ -22,6 +22,6 @@ for (let node = walk.nextNode(); node; node = walk.nextNode()) {
   const contrast = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
   const size = parseFloat(style.fontSize), large = size >= 24 || (size >= 18.66 && style.fontWeight >= 700);
   const words = `contrast ${contrast.toFixed(2)} of ${style.color}: ${node.textContent.trim().slice(0, 40)}`;
-  if (contrast < (large ? 3 : 4.5) && !told.has(style.color)) { told.add(style.color); found.push(words); }
+  if (contrast < (large ? 3 : 4.5) && !reported.has(style.color)) { reported.add(style.color); found.push(words); }
 }
 return found;

@@ -141,11 +141,11 @@ impl Browser {
     fn wait_for(&self, text: &str, time: Duration) {
         let begun = Instant::now();
         while self.script(&format!("return Boolean({text})")) != json!(true) {
-            let told = "return document.body.innerText";
+            let body = "return document.body.innerText";
             assert!(
                 begun.elapsed() < time,
                 "not in {time:?}: {text}; the page says {}",
-                self.script(told)
+                self.script(body)
             );
             std::thread::sleep(Duration::from_millis(100));
         }

@@ -20,7 +20,7 @@ struct Part<'a> {
     flip: [bool; 2],
 }
 
-/// A texture as the text tells it.
+/// A texture as the text defines it.
 struct Definition<'a> {
     name: TextureName,
     size: [i32; 2],

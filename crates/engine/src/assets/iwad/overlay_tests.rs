@@ -126,9 +126,9 @@ fn what_lies_over_an_iwad_counts_before_it() {
     let fire = &set.images[fire as usize];
     assert_eq!((fire.offset_x, fire.offset_y, fire.mask.as_deref()), (5, -6, Some(&[1, 0][..])));
     assert_eq!(set.sky, Some(TextureName::new("WALL")));
-    let told: Vec<&str> = set.left_out.iter().map(String::as_str).collect();
+    let left_out: Vec<&str> = set.left_out.iter().map(String::as_str).collect();
     assert_eq!(
-        told,
+        left_out,
         ["texture TINTED (Blend)", "the finer picture of WALL", "the ripples of LAVA1"]
     );
 }

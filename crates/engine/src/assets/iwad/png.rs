@@ -99,7 +99,7 @@ pub(super) fn decode(lump: &Lump<'_>, reader: &mut Reader) -> Result<Image, Iwad
     })
 }
 
-/// Decodes a PNG whose first channel tells how opaque a stain is.
+/// Decodes a PNG whose first channel says how opaque a stain is.
 pub(super) fn stain(lump: &Lump<'_>, reader: &mut Reader) -> Result<Stain, IwadError> {
     let rows = Rows::decode(lump, reader)?;
     let (width, height) = (rows.width, rows.height);

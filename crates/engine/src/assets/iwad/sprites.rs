@@ -1,4 +1,4 @@
-//! Sprites: lumps whose names tell frame and rotation, some for a second rotation mirrored.
+//! Sprites: lumps whose names give frame and rotation, some for a second rotation mirrored.
 
 use super::reader::Reader;
 use super::{IwadError, Sections, push};
@@ -47,7 +47,7 @@ pub(super) fn load(
     Ok(())
 }
 
-/// The frame and rotation that two characters of a name tell; rotation 0 is every side.
+/// The frame and rotation that two characters of a name give; rotation 0 is every side.
 fn view(pair: &[u8]) -> Option<(usize, u8)> {
     let frame = usize::from(pair[0].checked_sub(b'A')?);
     let rotation = pair[1].checked_sub(b'0')?;

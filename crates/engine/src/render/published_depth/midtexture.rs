@@ -1,4 +1,4 @@
-//! The depth of midtextures as ViZDoom writes it, by what it was seen to tell
+//! The depth of midtextures as ViZDoom writes it, by what was seen of it
 //! (`docs/results/pixels.md`).
 //!
 //! It draws four columns at once, one whose number divides by four and the three after it: the rows
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn single_rows_that_not_all_columns_have_are_told_an_older_depth() {
+    fn single_rows_that_not_all_columns_have_are_given_an_older_depth() {
         // Rows 3 to 5 are common: of what is above, column 1 has one row and column 2 two; below,
         // column 0 has one.
         assert_eq!(

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_below_what_four_columns_share_is_told() {
+    fn a_row_below_what_four_columns_share_is_written() {
         // Columns 4 to 7 are the only whole four.
         assert_eq!(listed(2, &[0; 7], &[9, 9, 9, 8, 10, 9, 9]), [(4, 8), (5, 8), (6, 8), (7, 8)]);
         // One that shows nothing, and one that ends where another begins: they share nothing.

@@ -16,7 +16,7 @@ impl World {
         let rocket = &self.actors[slot];
         let velocity = [rocket.vx, rocket.vy, rocket.vz];
         let place = [rocket.x + rocket.vx, rocket.y + rocket.vy, rocket.z + rocket.vz];
-        // Told apart by what the world has drawn so far, which goes on as if nobody had looked.
+        // Distinguished by what the world has drawn so far, which goes on as if nobody had looked.
         let key = Rng::for_lane(self.rng.state(), u64::from(tic)).state();
         let trail =
             Trail::new(self.id_of(slot), place, velocity, tic, rocket.sector, Chance::Own(key));

@@ -28,7 +28,7 @@ impl Path {
         let (dx, dy) = (wide(self.dx), wide(self.dy));
         let (ax, ay) = (wide(line.v1.x) - wide(self.x), wide(line.v1.y) - wide(self.y));
         let (lx, ly) = (wide(line.dx), wide(line.dy));
-        // Twice the areas that tell on which side of the path the line's ends are.
+        // Twice the areas that say on which side of the path the line's ends are.
         let first = dx * ay - dy * ax;
         let second = first + dx * ly - dy * lx;
         if (first > 0) == (second > 0) {

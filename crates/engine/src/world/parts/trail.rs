@@ -67,7 +67,7 @@ pub enum Chance {
     /// Draws of our own that hang on a number.
     Own(u64),
     /// The draws of each tic of flight, the yellow square's first.
-    Told(Arc<[[Lots; SQUARES as usize]]>),
+    Given(Arc<[[Lots; SQUARES as usize]]>),
 }
 
 /// What chance gives a square.
@@ -181,7 +181,7 @@ impl Trail {
     pub fn list(&self, now: u32, left: &mut Vec<Shed>) {
         match &self.chance {
             Chance::Own(key) => self.list_own(*key, now, left),
-            Chance::Told(lots) => {
+            Chance::Given(lots) => {
                 let tics = self.tics(now);
                 for (tic, lots) in
                     tics.clone().zip(lots.iter().skip((tics.start - self.begun) as usize))
@@ -204,8 +204,8 @@ impl Trail {
             Shed { tic: 0, is_yellow: false, lots: Lots::of(0, 0) },
         );
         for tic in tics {
-            // A stream of draws for each tic: the first number tells of every square how long it
-            // lives and its shade.
+            // A stream of draws for each tic: the first number says how long each square lives
+            // and its shade.
             let mut draws = Rng::from_state(
                 key.wrapping_add(u64::from(tic).wrapping_mul(0xD1B5_4A32_D192_ED03)),
             );
@@ -213,7 +213,7 @@ impl Trail {
             for (index, &lot) in first[..SQUARES as usize].iter().enumerate() {
                 let shed =
                     Shed { tic, is_yellow: index == 0, lots: Lots::of(lot, draws.next_u64()) };
-                // Which are left cannot be foretold: all are written, and those counted.
+                // Which are left cannot be predicted: all are written, and those counted.
                 left[count] = shed;
                 count += usize::from(age < shed.life());
             }

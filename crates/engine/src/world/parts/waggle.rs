@@ -33,8 +33,8 @@ pub(crate) struct Waggle {
 }
 
 impl Hash for Waggle {
-    /// Everything but the bookkeeping: worlds that will do the same have equal hashes, whoever
-    /// looked when.
+    /// Everything but the bookkeeping: worlds that will do the same have equal hashes, no
+    /// matter when they were looked at.
     fn hash<H: Hasher>(&self, state: &mut H) {
         (self.sector, self.rest).hash(state);
         (self.accumulator, self.accumulator_step).hash(state);

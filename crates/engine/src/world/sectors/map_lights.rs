@@ -106,7 +106,7 @@ mod tests {
                 134, 117, 99, 82, 65
             ]
         );
-        // What remains of the light by 64 tells how far it is at the beginning.
+        // What remains of the light by 64 says how far it is at the beginning.
         assert_eq!(levels(&[(special::PHASED, 256)])[0][1..43], lamp[2..44]);
         assert_eq!(levels(&[(special::PHASED, 192 + 41)])[0][1..4], [65, 82, 99]);
     }

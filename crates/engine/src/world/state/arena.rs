@@ -140,8 +140,8 @@ impl World {
         }
     }
 
-    /// The first slot from `from` on whose actor runs every tic. Which ones do cannot be foretold:
-    /// eight at a time, without a branch for each.
+    /// The first slot from `from` on whose actor runs every tic. Which ones do cannot be
+    /// predicted: eight at a time, without a branch for each.
     #[inline]
     pub(crate) fn next_awake(&self, mut from: usize) -> Option<usize> {
         while let Some(eight) = self.awake[from..].first_chunk::<8>() {

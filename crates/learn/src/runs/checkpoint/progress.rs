@@ -26,8 +26,8 @@ pub struct Progress {
     #[serde(default)]
     pub candidates: Candidates,
     /// The best alone, as versions that kept no others wrote it; never written any more.
-    #[serde(default, skip_serializing)]
-    pub hand_out: Option<Candidate>,
+    #[serde(default, rename = "hand_out", skip_serializing)]
+    pub sole_candidate: Option<Candidate>,
     /// The run was stopped in the midst of this moment's evaluation, which is still to be made.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub owes_evaluation: bool,
@@ -54,7 +54,7 @@ impl Progress {
     pub fn all_candidates(&self) -> Candidates {
         let mut all = self.candidates.clone();
         if all.ranked.is_empty() {
-            all.ranked.extend(self.hand_out.clone());
+            all.ranked.extend(self.sole_candidate.clone());
         }
         all
     }

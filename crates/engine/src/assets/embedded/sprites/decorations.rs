@@ -324,7 +324,7 @@ fn scattered_bones() -> Model {
 /// An explosive barrel, its lid showing what it holds.
 pub(super) fn barrel(glow: bool) -> Model {
     let body = Material::new(0x202426, 0x70787C, 0xC8D0D0).polished(0.5).mottled(0.14, 2.6);
-    // A painted band tells a barrel from everything else that is grey, as far as it can be seen.
+    // A painted band distinguishes a barrel from all else that is grey, as far as it can be seen.
     let paint = Material::new(0x6C5008, 0xE0B818, 0xFFF070).mottled(0.2, 2.2);
     let slime = if glow {
         Material::new(0x30A020, 0x68E848, 0xC8FF90).glowing()

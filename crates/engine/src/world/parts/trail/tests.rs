@@ -121,7 +121,7 @@ fn squares_are_where_the_published_engine_had_them() {
     let [place, velocity] = [[60, -10, 36], [0, 20, 0]].map(|vector| vector.map(Fixed::from_int));
     let id = world.players[0].actor;
     let mut trail =
-        Trail::new(id, place, velocity, 37, SectorId(0), Chance::Told(Arc::new([lots])));
+        Trail::new(id, place, velocity, 37, SectorId(0), Chance::Given(Arc::new([lots])));
     trail.ended = 38;
     for (age, now) in (0..).zip(38..42) {
         let mut left = Vec::new();

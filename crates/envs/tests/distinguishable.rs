@@ -132,7 +132,7 @@ const SEEN: f64 = 0.55;
 const APART: f64 = 0.6;
 
 #[test]
-fn classes_of_a_scenario_are_told_apart_at_128x72() {
+fn classes_of_a_scenario_are_distinguishable_at_128x72() {
     let mut alike = Vec::new();
     for scene in &SCENES {
         let options = EnvOptions { size: FrameSize::LEARNER, ..EnvOptions::default() };
@@ -162,5 +162,5 @@ fn classes_of_a_scenario_are_told_apart_at_128x72() {
             }
         }
     }
-    assert!(alike.is_empty(), "hard to tell apart:\n{}", alike.join("\n"));
+    assert!(alike.is_empty(), "hard to distinguish:\n{}", alike.join("\n"));
 }

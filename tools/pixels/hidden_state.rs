@@ -1,4 +1,4 @@
-//! What the published engine does not tell of a moment is what explains its picture best.
+//! The state of a moment that the published engine does not report: what explains its picture best.
 
 use crate::dump::{Moment, Pictures};
 use crate::pose::{Posed, Stage};
@@ -19,7 +19,7 @@ const LASTING: u32 = 1000;
 /// Where the weapon rests, 16.16 of the 320x200 screen.
 const AT_REST: [Fixed; 2] = [Fixed::ZERO, Fixed((32 << 16) + 24_576)];
 
-/// Finds everything, part by part, and tells it in a line.
+/// Finds everything, part by part, and reports it in a line.
 pub fn find(
     stage: &mut Stage,
     posed: &mut Posed,
@@ -81,12 +81,12 @@ pub fn find(
     for mark in 0..marks {
         try_all(posed, turned(&[mark]), &world);
     }
-    // Where marks overlap, how one is turned is told only together with the others.
+    // Where marks overlap, how one is turned shows only together with the others.
     for (one, other) in (0..marks).flat_map(|one| (0..one).map(move |other| (one, other))) {
         try_all(posed, turned(&[one, other]), &world);
     }
     let things = |at: usize| at < view && !matches!(theirs.labels[at], 0 | 1 | 255);
-    // What shines through is told only together with what is behind it: another round, by the
+    // What shines through shows only together with what is behind it: another round, by the
     // pixels of all things.
     for again in [false, true] {
         for (label, id) in posed.actors.clone() {
@@ -182,8 +182,8 @@ fn launcher() -> Vec<Change> {
     variants
 }
 
-/// Every frame of an actor's animations; the published name tells the dying from the others, but of
-/// missiles.
+/// Every frame of an actor's animations; the published name distinguishes the dying from others,
+/// but of missiles.
 fn frames(world: &World, slot: usize, dead: bool) -> Vec<Change> {
     let set = |phase: Phase, step: u8, spawn_tic: u32| -> Change {
         Box::new(move |world: &mut World| {
