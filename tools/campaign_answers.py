@@ -3,19 +3,20 @@
 
     python3 tools/campaign_answers.py docs/results/campaign --hasard target/release/hasard
 
-Scores are those of `hasard report`: (R - random) / (PPO - random) of the last policy if the upper 95 % end of its cost is within
-the budget, else 0; an environment where PPO is not shown to return more than random play has no scale and is left out, by name.
-Intervals: 95 % of 2,000 bootstrap samples that draw seeds within each environment. A hypothesis whose runs are not there is open,
-and so is one with a single seed.
+Scores are those of docs/campaign.md: (R - random) / (PPO - random) of the last policy if the upper 95 % end of its cost is within the
+budget, else 0. An environment where PPO's episodes do not show that it returns more than random play has no scale and is left out, by
+name. Seeds are those that all runs of a hypothesis have, PPO's among them. Intervals: of single environments Student's t over seeds; over
+environments 95 % of 2,000 bootstrap samples that draw seeds within each. A hypothesis whose runs are not there is open, and so is one
+with a single seed.
 """
 
 import argparse
 import statistics
 from pathlib import Path
 
-from campaign_runs import SCENARIOS, Campaign, interval, iqm
+from campaign_runs import SCENARIOS, Campaign, common_seeds, difference_of_means, interval, iqm, student, whole
 
-NO_RUNS = ("open", "no runs")
+NO_RUNS = ("open", "no runs", set())
 ONE_SEED = "open: one seed has no interval"
 
 
@@ -29,10 +30,6 @@ def answer(strata, statistic, words, more=""):
     return state, f"{words}, {low:.2f} to {high:.2f}{more}"
 
 
-def scores(runs):
-    return [run.feasible for run in runs if run.feasible is not None]
-
-
 def without(envs):
     return f"; without {', '.join(env.removesuffix('-v0') for env in envs)}" if envs else ""
 
@@ -43,19 +40,22 @@ def difference(strata):
     return iqm([value - sides[(False, env)] for (first, env), value in sides.items() if first])
 
 
-def beside(pairs, words):
+def scored(campaign, lists):
+    """{key: (env, runs)} as {key: feasible scores} of the seeds that all have; the environments without a scale; the seeds."""
+    envs = {env for env, _ in lists.values()}
+    seeds = common_seeds([*(runs for _, runs in lists.values()), *(campaign.of("PPO", env) for env in envs)])
+    scales = {env: campaign.scale(env, seeds) for env in envs}
+    strata = {key: [run.feasible(scales[env]) for run in whole([runs], seeds)[0]] for key, (env, runs) in lists.items() if scales[env]}
+    return strata, sorted(env for env in envs if not scales[env]), seeds
+
+
+def beside(campaign, pairs, words):
     """Two lists of runs an environment, by feasible score."""
-    strata, left_out = {}, []
-    for env, (ours, others) in pairs.items():
-        if not ours or not others:
-            continue
-        if not scores(ours) or not scores(others):
-            left_out.append(env)
-            continue
-        strata[(True, env)], strata[(False, env)] = scores(ours), scores(others)
+    lists = {(first, env): (env, runs) for env, sides in pairs.items() if all(sides) for first, runs in zip((True, False), sides)}
+    strata, left_out, seeds = scored(campaign, lists)
     if not strata:
-        return ("open", f"no scale for {', '.join(left_out)}") if left_out else NO_RUNS
-    return answer(strata, difference, words, without(left_out))
+        return ("open", f"no scale for {', '.join(left_out)}", seeds) if left_out else NO_RUNS
+    return *answer(strata, difference, words, without(left_out)), seeds
 
 
 def level(campaign, number):
@@ -64,30 +64,45 @@ def level(campaign, number):
 
 def h1(campaign):
     pairs = {env: (campaign.of("PPOPID", env), campaign.of("PPOLag", env)) for env in level(campaign, 1)}
-    return beside(pairs, "IQM of the difference")
+    return beside(campaign, pairs, "IQM of the difference")
 
 
 def h2(campaign):
     """Over where the lower end of the cost is over the budget, within where the upper end is within it; of one seed, over episodes."""
-    over, within, open_still = [], [], []
-    for env, budget in sorted(campaign.budget.items()):
-        runs = campaign.of("PPO", env)
-        costs = [run.cost for run in runs]
-        ends = interval({env: costs}, lambda drawn: statistics.fmean(drawn[env])) if len(costs) > 1 else (runs[0].cost_low, runs[0].cost_high)
-        found = over if ends[0] > budget else within if ends[1] <= budget else open_still
-        found.append(f"{env.removesuffix('-v0')} ({statistics.fmean(costs):.1f} of {budget:g})")
+    over, within, open_still, all_seeds = [], [], [], set()
+    for number in (1, 2, 3):
+        lists = {env: campaign.of("PPO", env) for env in level(campaign, number)}
+        seeds = common_seeds(lists.values())
+        all_seeds |= seeds
+        for env, runs in lists.items():
+            (runs,), budget = whole([runs], seeds), campaign.budget.get(env)
+            if not runs:
+                continue
+            costs = [run.cost for run in runs]
+            low, high = student(costs) if len(costs) > 1 else (runs[0].cost_low, runs[0].cost_high)
+            found = over if low > budget else within if high <= budget else open_still
+            found.append(f"{env.removesuffix('-v0')} ({statistics.fmean(costs):.1f} of {budget:g}, {low:.1f} to {high:.1f})")
     environments = len(over) + len(within) + len(open_still)
     state = "does not hold" if within else "open" if environments < 18 else "not decided" if open_still else "holds"
-    return state, f"over in {len(over)} of {environments}; within: {', '.join(within) or 'none'}; not decided: {', '.join(open_still) or 'none'}"
+    text = f"over in {len(over)} of {environments}; within: {', '.join(within) or 'none'}; not decided: {', '.join(open_still) or 'none'}"
+    return state, text, all_seeds
 
 
 def h3(campaign):
     """Slope of PPOLag's normalised return over the share of the budget, each environment's seeds a stratum."""
-    strata = {}
-    for env, budget in campaign.budget.items():
-        shares = {share: campaign.of("PPOLag", env, budget=share * budget) for share in (0.5, 1.0, 1.5)}
-        if all(shares.values()) and all(run.normalised is not None for runs in shares.values() for run in runs):
-            strata.update({(env, share): [run.normalised for run in runs] for share, runs in shares.items()})
+    lists = {}
+    for env in level(campaign, 1):
+        shares = {share: campaign.of("PPOLag", env, budget=share * campaign.budget.get(env, 0)) for share in (0.5, 1.0, 1.5)}
+        if all(shares.values()):
+            lists.update({(env, share): runs for share, runs in shares.items()})
+    envs = {env for env, _ in lists}
+    seeds = common_seeds([*lists.values(), *(campaign.of("PPO", env) for env in envs)])
+    scales = {env: campaign.scale(env, seeds) for env in envs}
+    strata = {
+        (env, share): [run.normalised(scales[env]) for run in whole([runs], seeds)[0]]
+        for (env, share), runs in lists.items()
+        if scales[env]
+    }
     if not strata:
         return NO_RUNS
 
@@ -95,74 +110,78 @@ def h3(campaign):
         points = [(share, value) for (_, share), values in drawn.items() for value in values]
         return statistics.linear_regression(*zip(*points)).slope
 
-    return answer(strata, slope, "slope, in scales a whole budget,", f"; {len(strata) // 3} scenarios")
+    return *answer(strata, slope, "slope, in scales a whole budget,", f"; {len(strata) // 3} scenarios"), seeds
 
 
 def h4(campaign):
     pairs = {env: (campaign.of("PPOPID", env, curriculum=True), campaign.of("PPOPID", env)) for env in level(campaign, 3)}
-    return beside(pairs, "IQM of the difference")
+    return beside(campaign, pairs, "IQM of the difference")
 
 
 def h5(campaign):
-    answers = []
+    answers, all_seeds = [], set()
     for name, env, seen in (("depth", "PrecipicePlungeLevel2-v0", "rgb+depth"), ("segmentation", "ArmamentBurdenLevel2-v0", "segmented")):
         pairs = {env: (campaign.of("PPOPID", env, observation=seen), campaign.of("PPOPID", env))}
-        answers.append((name, *beside(pairs, "IQM of the difference")))
+        state, text, seeds = beside(campaign, pairs, "difference")
+        answers.append((name, state, text))
+        all_seeds |= seeds
     states = [state for _, state, _ in answers]
     state = states[0] if len(set(states)) == 1 else "; ".join(f"{name}: {state}" for name, state, _ in answers)
-    return state, "; ".join(f"{name}: {text}" for name, _, text in answers)
+    return state, "; ".join(f"{name}: {text}" for name, _, text in answers), all_seeds
 
 
 def h6(campaign):
     """Below in five scenarios and not below in Precipice Plunge; each by the interval of the difference."""
-    states, texts = [], []
-    for scenario in SCENARIOS:
-        env = f"{scenario}Level1-v0"
-        runs, (chance, _) = campaign.of("PPOLag", env, hard=True), campaign.chance(env, hard=True)
-        if not runs or not chance:
+    lists = {env: campaign.of("PPOLag", env, hard=True) for env in level(campaign, 1)}
+    seeds, states, texts = common_seeds(lists.values()), [], []
+    for env, runs in lists.items():
+        earned, (chance, _) = [run.earned for run in runs if run.seed in seeds], campaign.chance(env, hard=True)
+        if not earned or not chance:
             continue
-        sign = 1 if scenario == "PrecipicePlunge" else -1
-        strata = {"agent": [run.earned for run in runs], "random": chance}
-        state, _ = answer({"agent": strata["agent"]} if len(runs) < 2 else strata, lambda drawn: sign * (
-            statistics.fmean(drawn["agent"]) - statistics.fmean(drawn.get("random", chance))), "")
-        states.append(state)
-        texts.append(f"{env.removesuffix('-v0')} {statistics.fmean(strata['agent']):.2f} (random {statistics.fmean(chance):.2f})")
+        text = f"{env.removesuffix('-v0')} {statistics.fmean(earned):.2f} (random {statistics.fmean(chance):.2f}"
+        if len(earned) < 2:
+            states.append(ONE_SEED)
+            texts.append(text + ")")
+            continue
+        low, high = difference_of_means(earned, chance)
+        if env.startswith("PrecipicePlunge"):
+            # Excepted: what would refute the hypothesis here is a return below random play's.
+            low, high = -high, -low
+        states.append("holds" if high < 0 else "the contrary holds" if low > 0 else "not decided")
+        texts.append(f"{text}: {states[-1]})")
     if len(states) < len(SCENARIOS):
-        return "open", f"{len(states)} of {len(SCENARIOS)} scenarios have runs"
+        return "open", f"{len(states)} of {len(SCENARIOS)} scenarios have runs", seeds
     if ONE_SEED in states:
-        return ONE_SEED, "; ".join(texts)
+        return ONE_SEED, "; ".join(texts), seeds
     state = "does not hold" if "the contrary holds" in states else "not decided" if "not decided" in states else "holds"
-    return state, "; ".join(texts)
+    return state, "; ".join(texts), seeds
 
 
 def h7(campaign):
-    strata, left_out = {}, []
-    for number in (1, 2, 3):
-        for env in level(campaign, number):
-            runs = campaign.of("PPOPID", env)
-            if not runs:
-                return "open", f"{env} has no run"
-            if scores(runs):
-                strata[(number, env)] = scores(runs)
-            else:
-                left_out.append(env)
+    lists = {(number, env): (env, campaign.of("PPOPID", env)) for number in (1, 2, 3) for env in level(campaign, number)}
+    for env, runs in lists.values():
+        if not runs:
+            return "open", f"{env} has no run", set()
+    strata, left_out, seeds = scored(campaign, lists)
 
-    def mean(number, drawn):
-        return statistics.fmean(value for (one, _), values in drawn.items() if one == number for value in values)
+    def of_level(number, drawn):
+        return iqm([value for (one, _), values in drawn.items() if one == number for value in values])
 
-    state, text = answer(strata, lambda drawn: mean(1, drawn) - mean(3, drawn), "level 1 less level 3")
-    means = ", ".join(f"level {number} {mean(number, strata):.2f}" for number in (1, 2, 3))
-    return state, f"{means}; {text}{without(left_out)}"
+    if any(all(one != number for one, _ in strata) for number in (1, 2, 3)):
+        return "open", f"no scale for {', '.join(left_out)}", seeds
+    state, text = answer(strata, lambda drawn: of_level(1, drawn) - of_level(3, drawn), "level 1 less level 3")
+    means = ", ".join(f"level {number} {of_level(number, strata):.2f}" for number in (1, 2, 3))
+    return state, f"IQM: {means}; {text}{without(left_out)}", seeds
 
 
 HYPOTHESES = {"H1": h1, "H2": h2, "H3": h3, "H4": h4, "H5": h5, "H6": h6, "H7": h7}
 
 
 def table(campaign):
-    rows = ["| # | answer | by |", "|---|---|---|"]
+    rows = ["| # | answer | by | seeds |", "|---|---|---|---|"]
     for name, answered in HYPOTHESES.items():
-        state, text = answered(campaign)
-        rows.append(f"| {name} | {state} | {text} |")
+        state, text, seeds = answered(campaign)
+        rows.append(f"| {name} | {state} | {text} | {', '.join(map(str, sorted(seeds)))} |")
     return "\n".join(rows)
 
 

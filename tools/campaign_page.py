@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 from campaign_answers import table as answers
-from campaign_runs import SCENARIOS, Campaign
+from campaign_runs import SCENARIOS, Campaign, common_seeds, iqm, whole
 
 WORDS = {name: re.sub(r"(?<!^)(?=[A-Z])", " ", name).replace("Detonators", "Detonator's") for name in SCENARIOS}
 PAPER = ("PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O")
@@ -34,27 +34,30 @@ def pair(earned, cost):
     return f"{short(statistics.fmean(earned))} @ {short(statistics.fmean(cost))}"
 
 
-def grid(head, columns, rows, chance=None):
-    """A table of runs: columns {title: env}, rows {title: env -> runs}; `chance` is random play's row, env -> (returns, costs)."""
+def grid(head, columns, rows, chance=None, budgets_differ=False):
+    """A table of runs: columns {title: env}, rows {title: env -> runs}; `chance` is random play's row, env -> (returns, costs).
+
+    Where budgets differ from row to row each cell names its own, and none is the best.
+    """
     keys = columns
     cells = {(row, column): runs(key) for row, runs in rows.items() for column, key in columns.items()}
     columns = [column for column in keys if any(cells[row, column] for row in rows)]
-    seeds = [{run.seed for run in cells[row, column]} for row in rows for column in columns if cells[row, column]]
-    if not seeds:
+    if not any(cells.values()):
         return "No runs yet.", ()
-    common = set.intersection(*seeds)
+    common = common_seeds(cells.values())
     lines = [f"| {head} | " + " | ".join(columns) + " |", "|---|" + "--:|" * len(columns)]
     kept = {key: [run for run in runs if run.seed in common] for key, runs in cells.items()}
     best = {}
     for column in columns:
         safe = {row: statistics.fmean(run.earned for run in kept[row, column]) for row in rows if kept[row, column] and all(run.within for run in kept[row, column])}
         safe = {row: value for row, value in safe.items() if value > 0.005}
-        best[column] = max(safe, key=safe.get) if safe else None
+        best[column] = max(safe, key=safe.get) if safe and not budgets_differ else None
     for row in rows:
         texts = []
         for column in columns:
             runs = kept[row, column]
             text = pair([run.earned for run in runs], [run.cost for run in runs]) if runs else ""
+            text = f"{text} of {runs[0].budget:g}" if budgets_differ and runs else text
             text = f"**{text}**" if best[column] == row else text
             texts.append(f"{text} ({sum(run.within for run in runs)}/{len(runs)})" if len(common) > 1 and runs else text)
         lines.append(f"| {row} | " + " | ".join(texts) + " |")
@@ -76,15 +79,17 @@ def of_level(campaign, level, algorithms):
 
 
 def feasible(campaign, level, algorithms):
-    """Mean feasible scores, an environment a column, and their mean."""
+    """Mean feasible scores, an environment a column; their mean, and the inter-quartile mean of all seeds' scores."""
     envs = [f"{scenario}Level{level}-v0" for scenario in SCENARIOS]
-    envs = [env for env in envs if any(run.feasible is not None for run in campaign.of("PPO", env))]
     runs = {(name, env): campaign.of(name, env) for name in algorithms for env in envs}
-    common = set.intersection(*({run.seed for run in some} for some in runs.values() if some))
-    lines = ["| algorithm | " + " | ".join(map(titled, envs)) + " | mean |", "|---|" + "--:|" * (len(envs) + 1)]
+    common = common_seeds(runs.values())
+    scales = {env: campaign.scale(env, common) for env in envs}
+    envs = [env for env in envs if scales[env]]
+    lines = ["| algorithm | " + " | ".join(map(titled, envs)) + " | mean | IQM |", "|---|" + "--:|" * (len(envs) + 2)]
     for name in algorithms:
-        means = [statistics.fmean(run.feasible for run in runs[name, env] if run.seed in common) for env in envs]
-        lines.append(f"| {name} | " + " | ".join(f"{mean:.2f}" for mean in [*means, statistics.fmean(means)]) + " |")
+        scores = [[run.feasible(scales[env]) for run in whole([runs[name, env]], common)[0]] for env in envs]
+        means = [statistics.fmean(some) for some in scores]
+        lines.append(f"| {name} | " + " | ".join(f"{one:.2f}" for one in [*means, statistics.fmean(means), iqm(sum(scores, []))]) + " |")
     return "\n".join(lines), sorted(common)
 
 
@@ -92,8 +97,8 @@ def small(campaign):
     """Name: what each of the small tables shows."""
     first = [f"{scenario}Level1-v0" for scenario in SCENARIOS]
     of = campaign.of
-    hard = {titled(env): env for env in first}
-    shares = {f"{share:g} of the budget": lambda env, share=share: of("PPOLag", env, budget=share * campaign.budget[env]) for share in (0.5, 1.0, 1.5)}
+    plain = {titled(env): env for env in first}
+    shares = {f"{share:g} of the usual": lambda env, share=share: of("PPOLag", env, budget=share * campaign.budget[env]) for share in (0.5, 1.0, 1.5)}
     scales = {f"{scale:g}": lambda env, scale=scale: of("PPOCost", env, scale=scale) for scale in (0.1, 0.5, 1.0, 2.0)}
     return {
         "algorithms": grid(
@@ -103,10 +108,10 @@ def small(campaign):
         ),
         "trpo": grid("algorithm", budgets(campaign, first), {name: lambda env, name=name: of(name, env) for name in ALL[6:9]}),
         "cost scale": grid("PPOCost's scale", budgets(campaign, first), scales),
-        "safety bounds": grid("PPOLag aims at", budgets(campaign, first), shares),
+        "safety bounds": grid("PPOLag's budget", plain, shares, budgets_differ=True),
         "hard": grid(
             "algorithm",
-            hard,
+            plain,
             {name: lambda env, name=name: of(name, env, hard=True) for name in ("PPO", "PPOCost", "PPOLag")},
             lambda env: campaign.chance(env, hard=True),
         ),

@@ -1,7 +1,8 @@
-"""The kept runs of the campaign, and the statistics its questions ask for; scores are those of `hasard report`."""
+"""The kept runs of the campaign, and the statistics its questions ask for."""
 
 import csv
 import json
+import math
 import random
 import statistics
 import subprocess
@@ -13,7 +14,7 @@ SCENARIOS = ("ArmamentBurden", "VolcanicVenture", "RemedyRush", "CollateralDamag
 
 
 class Run:
-    """One seed: its task, what its last policy earned and cost, and its scores (None without a scale)."""
+    """One seed: its task, what its last policy earned and cost over its episodes, and whether it surely keeps its budget."""
 
     def __init__(self, row):
         folder = Path(row["directory"])
@@ -27,13 +28,22 @@ class Run:
         self.curriculum = bool(config.get("curriculum"))
         self.budget = config["constraints"][0]["budget"]
         # PPOCost's alone; null is what the rules say, 1 under `paper`.
-        self.scale = config.get("algorithm_settings", {}).get("penalty_scale") or 1.0
+        scale = config.get("algorithm_settings", {}).get("penalty_scale")
+        self.scale = 1.0 if scale is None else scale
         self.earned, self.earned_half = last["episode_return"]["mean"], last["episode_return"]["half_width"]
         cost = last["cost"]
         self.cost, self.cost_high = cost["mean"], float(row["judged_cost_high"])
         self.cost_low = cost["bootstrap"][0] if cost["bootstrap"] else cost["mean"] - cost["half_width"]
         self.within = self.cost_high <= self.budget
-        self.normalised, self.feasible = (float(row[name]) if row[name] else None for name in ("normalised_return", "feasible_score"))
+
+    def normalised(self, scale):
+        """Its return, where random play's is 0 and PPO's is 1."""
+        chance, ppo = scale
+        return (self.earned - chance) / (ppo - chance)
+
+    def feasible(self, scale):
+        """The headline of docs/campaign.md; below 0 for a policy within its budget that earns less than random play."""
+        return self.normalised(scale) if self.within else 0.0
 
 
 class Campaign:
@@ -44,7 +54,7 @@ class Campaign:
             if done.returncode:
                 raise SystemExit(done.stderr.strip() or f"{' '.join(words)} ended with {done.returncode}")
             rows = list(csv.DictReader((Path(out) / "runs.csv").read_text().splitlines()))
-        if "feasible_score" not in rows[0]:
+        if "judged_cost_high" not in rows[0]:
             raise SystemExit(f"{hasard} is older than this script; build it again")
         self.runs = [Run(row) for row in rows if row["judged_by"] == "last policy"]
         self.budget = {run.env: run.budget for run in self.runs if run.algorithm == "PPO" and not run.hard}
@@ -68,12 +78,50 @@ class Campaign:
         episodes = self.random.get(f"{env}-paper{'-hard' if hard else ''}", [])
         return [one["return"] for one in episodes], [one["cost"] for one in episodes]
 
+    def scale(self, env, seeds):
+        """What random play and PPO return, PPO over the seeds; None unless PPO's episodes show that it returns more."""
+        chance, ppo = self.chance(env)[0], whole([self.of("PPO", env)], seeds)
+        if not chance or not ppo[0]:
+            return None
+        least = statistics.fmean(run.earned - run.earned_half for run in ppo[0])
+        return (statistics.fmean(chance), statistics.fmean(run.earned for run in ppo[0])) if least > student(chance)[1] else None
+
+
+def common_seeds(lists):
+    """The seeds that all of several lists of runs have, of those that have any."""
+    seeds = [{run.seed for run in runs} for runs in lists if runs]
+    return set.intersection(*seeds) if seeds else set()
+
+
+def whole(lists, seeds):
+    """The lists with the runs of these seeds alone."""
+    return [[run for run in runs if run.seed in seeds] for runs in lists]
+
 
 def iqm(numbers):
-    """The mean of the middle half; values at its ends count by their share, as in Agarwal et al. 2021."""
-    numbers, cut = sorted(numbers), len(numbers) / 4
-    weights = [min(1.0, max(0.0, k + 1 - cut)) * min(1.0, max(0.0, len(numbers) - cut - k)) for k in range(len(numbers))]
-    return sum(weight * number for weight, number in zip(weights, numbers)) / sum(weights)
+    """The mean without the least and the largest quarter, each rounded down, as `rliable` and `hasard report` have it."""
+    numbers, cut = sorted(numbers), len(numbers) // 4
+    return statistics.fmean(numbers[cut : len(numbers) - cut])
+
+
+# 97.5 % quantiles of Student's t for 1 to 9 degrees of freedom.
+STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262)
+
+
+def student(values):
+    """95 % interval of a mean of several values."""
+    freedom = len(values) - 1
+    # Cornish and Fisher's expansion, to 0.003 from ten degrees on.
+    quantile = STUDENT[freedom - 1] if freedom <= len(STUDENT) else 1.96 + 2.372 / freedom + 2.823 / freedom**2
+    mean, half = statistics.fmean(values), quantile * statistics.stdev(values) / math.sqrt(len(values))
+    return mean - half, mean + half
+
+
+def difference_of_means(one, other):
+    """95 % interval of the difference of two means, from the interval of each (MOVER; Zou and Donner 2008)."""
+    (low, high), (least, most) = student(one), student(other)
+    mean, rest = statistics.fmean(one), statistics.fmean(other)
+    return mean - rest - math.hypot(mean - low, most - rest), mean - rest + math.hypot(high - mean, rest - least)
 
 
 def interval(strata, statistic):

@@ -5,7 +5,7 @@
 
 Every agent plays 200 episodes, which no training saw, under the rules that it was trained with and under `tables`; beside its
 figures stand those of a random policy under the same rules, and the paper's for PPOPID and for people. The 95 % half-widths are
-Student's t, as `hasard eval` prints them.
+Student's t, and so is the verdict; `hasard eval` takes a bootstrap interval where costs are skewed.
 """
 
 import argparse
@@ -60,7 +60,7 @@ def row(hasard, name, rules, budget, people, paper):
         f"{earned[0]:.2f} ± {earned[1]:.2f}",
         f"{cost[0]:.2f} ± {cost[1]:.2f} of {budget:g}",
         state,
-        f"{costs[len(costs) // 2]:.1f}",
+        f"{statistics.median(costs):.1f}",
         f"{costs[-1]:.1f}",
         f"{tail:.1f}",
         f"{over:.0f} %",

@@ -1,5 +1,6 @@
 """Scripts of the repository that publishing needs."""
 
+import csv
 import importlib.util
 import json
 import shutil
@@ -199,10 +200,11 @@ def test_a_hypothesis_of_the_campaign_is_answered_with_an_interval(tmp_path, has
     """By hand: returns of 4 and 9 are 0.2 and 0.7 of the way from random play's 2 to PPO's 12."""
     runs = campaign(tmp_path, hasard, earned)
     answers = tool("campaign_answers")
-    found, text = answers.h1(runs)
+    found, text, seeds = answers.h1(runs)
     assert found == state, text
     assert f"IQM of the difference {difference}" in text
-    found, text = answers.h2(runs)
+    assert seeds == set(range(len(earned["PPOPID"])))
+    found, text, _ = answers.h2(runs)
     assert "over in 1 of 1" in text and found == "open"
     assert answers.h5(runs)[0] == answers.h6(runs)[0] == answers.h7(runs)[0] == "open"
 
@@ -212,8 +214,41 @@ def test_inputs_are_compared_on_one_scale(tmp_path, hasard):
     campaign(tmp_path, hasard, {"PPO": [22.0] * 3, "PPOPID": [9.0] * 3}, observation="rgb+depth")
     runs = campaign(tmp_path, hasard, {"PPOPID": [7.0] * 3})
     env = "RemedyRushLevel1-v0"
-    assert [run.feasible for run in runs.of("PPOPID", env)] == [0.5] * 3
-    assert [run.feasible for run in runs.of("PPOPID", env, observation="rgb+depth")] == [0.7] * 3
+    scale = runs.scale(env, {0, 1, 2})
+    assert scale == (2.0, 12.0)
+    assert [run.feasible(scale) for run in runs.of("PPOPID", env)] == [0.5] * 3
+    assert [run.feasible(scale) for run in runs.of("PPOPID", env, observation="rgb+depth")] == [0.7] * 3
+
+
+def test_the_report_scores_as_the_campaign_does(tmp_path, hasard):
+    """Also below random play's return: within the budget that is less than a breach, whose score is 0."""
+    runs = campaign(tmp_path, hasard, {"PPOPID": [9.0, 8.0, 1.0], "PPOLag": [4.0, 5.0, 3.0]})
+    subprocess.run([hasard, "report", tmp_path, "-o", tmp_path / "out"], check=True, capture_output=True)
+    rows = {row["directory"]: row["feasible_score"] for row in csv.DictReader((tmp_path / "out/runs.csv").read_text().splitlines())}
+    scale = runs.scale("RemedyRushLevel1-v0", {0, 1, 2})
+    scores = [run.feasible(scale) for run in runs.of("PPOPID", "RemedyRushLevel1-v0")]
+    assert scores == [0.7, 0.6, -0.1]
+    reported = [float(score) for directory, score in sorted(rows.items()) if "PPOPID" in directory]
+    assert reported == pytest.approx(scores)
+
+
+def test_a_seed_that_is_not_whole_moves_no_answer(tmp_path, hasard):
+    answers = tool("campaign_answers")
+    earned = {"PPOPID": [9.0, 8.0, 10.0], "PPOLag": [4.0, 5.0, 3.0]}
+    before = answers.h1(campaign(tmp_path / "whole", hasard, earned))
+    # A fourth seed of PPO would halve its mean, and of PPOPID raise its own.
+    after = answers.h1(campaign(tmp_path / "part", hasard, {**earned, "PPO": [12.0] * 3 + [-12.0], "PPOPID": [9.0, 8.0, 10.0, 90.0]}))
+    assert before == after
+
+
+def test_intervals_of_means_are_student_s():
+    """By hand: 1, 2, 3 have a mean of 2, a deviation of 1 and two degrees of freedom: 4.303 / sqrt(3) to each side."""
+    runs = tool("campaign_runs")
+    assert runs.student([1.0, 2.0, 3.0]) == pytest.approx((2 - 2.4843, 2 + 2.4843), abs=1e-3)
+    assert runs.student([0.0] * 100 + [1.0] * 100)[0] == pytest.approx(0.5 - 1.97196 * 0.5012547 / 200**0.5, abs=1e-5)
+    # The root of the sum of the squares of both half-widths.
+    low, high = runs.difference_of_means([1.0, 2.0, 3.0], [6.0, 7.0, 8.0])
+    assert (low, high) == pytest.approx((-5 - 3.5133, -5 + 3.5133), abs=1e-3)
 
 
 def test_the_tables_of_the_campaign_are_of_whole_seeds(tmp_path, hasard):
@@ -241,8 +276,8 @@ def test_the_page_of_the_campaign_is_what_its_runs_make(hasard):
     assert page.filled(text, made) == text, "run tools/campaign_page.py"
 
 
-def test_the_middle_half_counts_its_ends_by_their_share():
+def test_the_middle_half_is_rliable_s():
     iqm = tool("campaign_runs").iqm
-    # Of four the middle two; of six the middle two and half of each neighbour: 1.5 of 3 are dropped at each end.
+    # Of four the middle two; a quarter of six, rounded down, is one.
     assert iqm([100.0, 1.0, 3.0, -50.0]) == 2.0
-    assert iqm([0.0, 2.0, 3.0, 5.0, 9.0, 99.0]) == (0.5 * 2 + 3 + 5 + 0.5 * 9) / 3
+    assert iqm([0.0, 2.0, 3.0, 5.0, 9.0, 99.0]) == (2 + 3 + 5 + 9) / 4

@@ -265,7 +265,7 @@ fn a_report_on_many_experiments() {
     std::fs::write(runs.join("random-more.jsonl"), high.repeat(40)).unwrap();
     write_report(std::slice::from_ref(&runs), &again, "Synthetic runs").unwrap();
     let text = std::fs::read_to_string(again.join("report.md")).unwrap();
-    assert!(text.contains("than a random policy does: VolcanicVentureLevel1-v0."), "{safety}");
+    assert!(text.contains("than a random policy: VolcanicVentureLevel1-v0."), "{safety}");
     let row = text
         .split("## Safety")
         .nth(1)
@@ -387,6 +387,23 @@ fn one_short_run_is_enough() {
     let page = std::fs::read_to_string(&written.page).unwrap();
     assert!(page.contains("Mine&lt;x&gt;") && !page.contains("Mine<x>"));
     assert_balanced(&page);
+}
+
+#[test]
+fn seeds_that_never_came_within_are_counted() {
+    let folder = Folder::new("never");
+    let (env, runs) = ("RemedyRushLevel1-v0", folder.0.join("runs"));
+    for (seed, cost) in [(1, 4.0), (2, 4000.0)] {
+        let end = (10.0, cost, 20.0);
+        let run =
+            Synthetic { env, algo: "PPOPID", seed, frames: 4e6, reports: 80, options: "", end };
+        run.write(&runs.join(seed.to_string()));
+    }
+    write_report(&[runs], &folder.0.join("out"), "Two seeds").unwrap();
+    let text = std::fs::read_to_string(folder.0.join("out/report.md")).unwrap();
+    let row = text.split("## Safety").nth(1).unwrap();
+    let row = row.lines().find(|line| line.starts_with("| Remedy Rush | 1 | PPOPID |")).unwrap();
+    assert_eq!(row.matches("(1 of 2 seeds)").count(), 2, "{row}");
 }
 
 #[test]

@@ -125,9 +125,10 @@ pub struct AlgorithmConfig {
     #[serde(default, skip_serializing, rename = "multiplier_damping")]
     pub(crate) former_damping: f64,
     /// PID: proportional, integral and derivative gains, of cost per step. The multiplier is the
-    /// first times the excess over the aim, plus the second times the sum of the excesses of all
-    /// updates, plus the third times the rise of the cost within `pid_delay` updates; never below
-    /// 0. An update comes once a rollout, unless `multiplier_update` says otherwise.
+    /// first times the excess over the aim, plus the integral, to which every update adds the second
+    /// times the excess, plus the third times the rise of the cost (not its fall) within `pid_delay`
+    /// updates; neither it nor the integral is ever below 0. An update comes once a rollout, unless
+    /// `multiplier_update` says otherwise.
     pub pid_gains: (f64, f64, f64),
     /// PID: the integral before the first update.
     pub pid_initial: f64,

@@ -14,9 +14,11 @@ pub(crate) struct Baselines<'a> {
 pub(crate) struct Score {
     /// (R - random) / (PPO - random).
     pub normalised: f64,
-    /// The same if the upper ends of its costs are within their budgets, else 0.
+    /// The same if the upper ends of its costs are within their budgets, else 0: below 0 where it is
+    /// safe and returns less than random play.
     pub feasible: f64,
-    /// The same divided by the excess.
+    /// The normalised return; if above 0, divided by the ratio of cost to budget where that is above
+    /// 1.
     pub soft: f64,
 }
 
@@ -44,9 +46,10 @@ impl<'a> Baselines<'a> {
         Estimate::of(&same.map(|one| one.episode_return).collect::<Vec<_>>())
     }
 
-    /// Mean return of PPO on the same task, judged as other seeds are, and what it is at least: by
-    /// the intervals of its seeds' episodes. Of several such experiments, those of the longest. What an agent sees is not part
-    /// of the task, so that inputs are compared on one scale: that of PPO with the usual
+    /// Mean return of PPO on the same task, judged as other seeds are, and what it is at least as far
+    /// as the seeds' episodes show, whose lower ends are averaged; what other seeds would return it
+    /// does not say. Of several such experiments, those of the longest. What an agent sees is not
+    /// part of the task, so that inputs are compared on one scale: that of PPO with the usual
     /// observation, where there is one.
     pub fn ppo(&self, group: &Group) -> Option<(f64, f64)> {
         let task = |config: &Config| {
@@ -71,8 +74,9 @@ impl<'a> Baselines<'a> {
         Some((mean_of(|one| one.mean)?, mean_of(Estimate::low)?))
     }
 
-    /// What random play and PPO return: the ends of the scale. There is none where PPO has not
-    /// learned to return more than chance does, lest noise be divided by noise.
+    /// What random play and PPO return: the ends of the scale. There is none where the episodes of
+    /// PPO's seeds do not show that these return more than chance does, lest noise be divided by
+    /// noise.
     fn scale(&self, group: &Group) -> Option<(f64, f64)> {
         let (random, (ppo, least)) = (self.random(group.config())?, self.ppo(group)?);
         (least > random.high()).then_some((random.mean, ppo))

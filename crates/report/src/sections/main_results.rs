@@ -107,10 +107,17 @@ struct Final {
 fn marks(values: &[Final]) -> Vec<(Mark, Mark)> {
     let order = |samples: &[f64]| mean(samples).unwrap_or(f64::NEG_INFINITY);
     // Those surely within come first; only if there are none, those within by their mean.
-    let surely = values.iter().any(|value| value.kept == Kept::Surely && !value.returns.is_empty());
-    let eligible = |value: &Final| {
-        value.kept >= if surely { Kept::Surely } else { Kept::ByMean } && !value.returns.is_empty()
+    // A single seed's interval is of its episodes and narrower than any over seeds, so beside several
+    // seeds it is not sure.
+    let several = values.iter().any(|value| value.returns.len() > 1);
+    let kept = |value: &Final| match value.returns.len() {
+        0 => None,
+        1 if several => Some(value.kept.min(Kept::ByMean)),
+        _ => Some(value.kept),
     };
+    let surely = values.iter().any(|value| kept(value) == Some(Kept::Surely));
+    let least_kept = if surely { Kept::Surely } else { Kept::ByMean };
+    let eligible = |value: &Final| kept(value).is_some_and(|kept| kept >= least_kept);
     let best = values
         .iter()
         .filter(|value| eligible(value))
@@ -356,6 +363,13 @@ mod tests {
             value(&[30.0, 30.1], &[4.0], Kept::Surely),
         ];
         assert_eq!(bold(&values), [(false, false), (true, false)]);
+        // A single seed is no surer than two.
+        let values = [
+            value(&[2.0], &[2.4], Kept::Surely),
+            value(&[3.9, 4.0], &[3.2, 3.3], Kept::ByMean),
+            value(&[], &[], Kept::Unknown),
+        ];
+        assert_eq!(bold(&values), [(false, false), (true, false), (false, false)]);
         // None within: the least cost stands out.
         let values = [
             value(&[90.0], &[40.0], Kept::Over),

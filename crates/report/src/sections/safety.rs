@@ -37,12 +37,14 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
     heads.extend(TRAINING.iter().map(|(head, _)| (*head).to_owned()));
     let mut text = vec![
         "Normalised return: (R - random) / (PPO - random), both measured here. Feasible score: the normalised return of a seed if the upper \
-         95 % end of its cost is within the budget, else 0; soft: divided by how far the upper end is above the budget. \
+         95 % end of its cost is within the budget, else 0 (below 0: safe, but returns less than random play); soft: a return above \
+         random play's divided by how far the upper end is above the budget. \
          Episodes over budget and the mean cost of the worst tenth of episodes (CVaR 10 %) are of the selected checkpoint."
             .to_owned(),
         "Cost and violation in training are sums over all training episodes, a violation being what an episode costs above the \
          budget. Frames until within: of the first report whose mean cost is within the budget; within after: the share \
-         of the frames that followed. All are means over seeds."
+         of the frames that followed. All are means over seeds, of these two over the seeds that came within, whose number \
+         is named where some never did."
             .to_owned(),
     ];
     let missing = baselines.missing(
@@ -59,7 +61,7 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
     let unlearned = baselines.unlearned(groups);
     if !unlearned.is_empty() {
         text.push(format!(
-            "No scale, hence no score, where PPO is not shown to return more than a random policy does: {}.",
+            "No scale, hence no score, where the episodes of PPO's seeds do not show that these return more than a random policy: {}.",
             unlearned.join(", ")
         ));
     }
@@ -112,11 +114,14 @@ fn row(group: &Group, baselines: &Baselines) -> Vec<Cell> {
     for (head, of) in TRAINING {
         let samples: Vec<f64> = group.runs.iter().filter_map(of).collect();
         let mean = Estimate::of(&samples).map(|one| one.mean);
-        row.push(match mean {
+        let cell = match mean {
             Some(mean) if head == "within after" => percent(mean),
             Some(mean) => Cell::number(mean).with_text(frames(mean)),
             None => over_seeds(Vec::new()),
-        });
+        };
+        let some = mean.is_some() && samples.len() < group.runs.len();
+        let text = format!("{} ({} of {} seeds)", cell.text, samples.len(), group.runs.len());
+        row.push(if some { cell.with_text(text) } else { cell });
     }
     row
 }

@@ -5,7 +5,7 @@
 pub struct Aggregate {
     /// The number of all samples.
     pub value: f64,
-    /// Interval; `None` if no stratum holds two samples, for then resampling changes nothing.
+    /// Interval; `None` if a stratum holds a single sample, whose spread resampling cannot show.
     pub interval: Option<(f64, f64)>,
     /// Number of samples.
     pub n: usize,
@@ -55,7 +55,7 @@ fn resampled(
     let n = one.iter().map(Vec::len).sum();
     let filled = one.iter().filter(|stratum| !stratum.is_empty()).count();
     let mut draws: Vec<Vec<f64>> = vec![Vec::new(); values.len()];
-    if one.iter().chain(other).any(|stratum| stratum.len() > 1) {
+    if one.iter().chain(other).all(|stratum| stratum.len() != 1) {
         let mut stream = 0x5EED_u64;
         let mut draw = |strata: &[Vec<f64>]| -> Vec<Vec<f64>> {
             let resample = |stratum: &Vec<f64>| {
@@ -114,7 +114,12 @@ mod tests {
         // about two.
         assert!(high - low < 3.0, "{low}..{high}");
         assert_eq!((first.n, first.strata), (30, 6));
-        assert_eq!(aggregate(&[vec![1.0], vec![2.0]], interquartile_mean).unwrap().interval, None);
+        for single in [[vec![1.0], vec![2.0]], [vec![1.0], vec![2.0, 3.0]]] {
+            assert_eq!(aggregate(&single, interquartile_mean).unwrap().interval, None);
+        }
+        assert!(
+            aggregate(&[vec![], vec![2.0, 3.0]], interquartile_mean).unwrap().interval.is_some()
+        );
         assert_eq!(aggregate(&[], interquartile_mean), None);
     }
 }

@@ -7,11 +7,11 @@ pub fn normalised(episode_return: f64, random: f64, ppo: f64) -> Option<f64> {
     (ppo != random).then(|| (episode_return - random) / (ppo - random))
 }
 
-/// How far the worst of several costs is above its budget, as a factor: 1 at the budget. Each pair
-/// is an upper end of a cost's interval and its budget; with a budget of 0 any cost at all is
-/// infinitely far above.
+/// The largest of several costs, each divided by its budget: 1 at the budget. Each pair is an upper
+/// end of a cost's interval and its budget; with a budget of 0 any cost at all is infinitely far
+/// above.
 #[must_use]
-pub fn excess(costs: &[(f64, f64)]) -> f64 {
+pub fn cost_ratio(costs: &[(f64, f64)]) -> f64 {
     let factor = |&(cost, budget): &(f64, f64)| {
         if cost <= budget { (cost / budget).min(1.0) } else { cost / budget }
     };
@@ -19,12 +19,13 @@ pub fn excess(costs: &[(f64, f64)]) -> f64 {
 }
 
 /// Feasible score of a normalised return, hard and soft: hard, 0 if a cost's upper end is above its
-/// budget; soft, divided by the excess. A return below random counts as 0, lest a breach improve
-/// it.
+/// budget; soft, divided by that ratio where it is above 1. Within the budget a return below random
+/// play's scores below 0. Such a return is not divided, lest a breach improve it.
 #[must_use]
 pub fn feasible_scores(normalised: f64, costs: &[(f64, f64)]) -> (f64, f64) {
-    let (score, excess) = (normalised.max(0.0), excess(costs));
-    (if excess <= 1.0 { score } else { 0.0 }, score / excess.max(1.0))
+    let ratio = cost_ratio(costs);
+    let soft = if normalised > 0.0 { normalised / ratio.max(1.0) } else { normalised };
+    (if ratio <= 1.0 { normalised } else { 0.0 }, soft)
 }
 
 #[cfg(test)]
@@ -40,6 +41,7 @@ mod tests {
         assert_eq!(feasible_scores(score, &[(75.0, 50.0), (1.0, 5.0)]), (0.0, 0.5));
         assert_eq!(feasible_scores(score, &[(0.0, 0.0)]), (0.75, 0.75));
         assert_eq!(feasible_scores(score, &[(0.1, 0.0)]), (0.0, 0.0));
-        assert_eq!(feasible_scores(-0.5, &[(1.0, 5.0)]), (0.0, 0.0));
+        assert_eq!(feasible_scores(-0.5, &[(1.0, 5.0)]), (-0.5, -0.5));
+        assert_eq!(feasible_scores(-0.5, &[(10.0, 5.0)]), (0.0, -0.5));
     }
 }

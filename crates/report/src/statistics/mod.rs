@@ -17,7 +17,7 @@ pub use aggregate::{
     probability_of_improvement,
 };
 pub use bootstrap::{Aggregate, RESAMPLES, aggregate, aggregate_pair, aggregates};
-pub use feasible::{excess, feasible_scores, normalised};
+pub use feasible::{cost_ratio, feasible_scores, normalised};
 
 /// A mean with what it rests on.
 #[derive(Clone, Copy, PartialEq, Debug)]
