@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Small copies of finished runs, from which `hasard report` draws what it draws from the runs.
+"""Small copies of finished runs, from which `hasard report` draws what it draws from the runs, but for threads and calibration.
 
     python3 tools/keep_runs.py runs/campaign docs/results/campaign --hasard target/release/hasard --agents 11
 
@@ -17,7 +17,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-# What no table or figure is drawn from.
+# What no table or figure of results is drawn from.
 LEFT_OUT = (
     *("loss", "gradient_norm", "seconds_", "policy_lag", "learning_rate", "ratio_deviation", "epochs", "kernels", "threads"),
     *("_min", "_max", "approx_kl", "clip_fraction", "kl_divergence"),
