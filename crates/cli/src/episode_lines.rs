@@ -34,6 +34,21 @@ impl Under {
         Under { rules, hard, full_actions, frame_skip }
     }
 
+    /// The same for people: what is not usual, and the rules in any case.
+    fn words(self) -> String {
+        let mut words = format!(", rules {}", self.rules.name());
+        if self.hard {
+            words += ", hard";
+        }
+        if self.full_actions {
+            words += ", full actions";
+        }
+        if self.frame_skip != EnvOptions::default().frame_skip {
+            words += &format!(", {} tics an action", self.frame_skip);
+        }
+        words
+    }
+
     /// Adds it to an episode's row: rule set and constraint always, the rest where it is not usual.
     pub fn say(self, row: &mut Value) {
         row["rules"] = json!(self.rules.name());
@@ -74,7 +89,8 @@ impl EpisodeLines {
             writeln!(out, "{row}")?;
         } else {
             if self.episodes.is_empty() {
-                writeln!(out, "{env}")?;
+                let under = self.under.map(Under::words).unwrap_or_default();
+                writeln!(out, "{env}{under}")?;
                 writeln!(
                     out,
                     "{:>7} {:>12} {:>10} {:>10} {:>7}  end",
@@ -213,15 +229,17 @@ fn tails_text(tails: &Tails, budget: Option<f64>) -> String {
 
 /// Means of episodes and their 95 % confidence half-widths as JSON.
 pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
-    let constraints: Vec<Value> = all.constraints.iter().map(judgement).collect();
+    let constraints: Vec<Value> =
+        all.constraints.iter().map(|one| judgement(one, episodes_of(all, one))).collect();
     // Of a single episode no interval is known.
     let known = |number: f64| (all.episodes > 1).then_some(number);
+    let whole = all.constraints.iter().find(|one| one.term.is_none());
     let mut row = json!({ "summary": {
         "episodes": all.episodes,
         "return_mean": all.episode_return.mean, "return_ci95": known(all.episode_return.half_width),
         "cost_mean": all.cost.mean, "cost_ci95": known(all.cost.half_width),
         "cost_interval": [known(all.cost.low()), known(all.cost.high())], "cost_interval_by": interval_by(&all.cost),
-        "cost_tails": spread(&all.tails),
+        "cost_tails": spread(whole.map_or(&all.tails, |one| &one.tails)),
         "stats": mean_stats(episodes),
         "length_mean": all.length.mean, "length_ci95": known(all.length.half_width),
         "safety_budget": all.constraints.first().map(|one| one.budget),
@@ -230,10 +248,11 @@ pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
     }});
     if !all.tasks.is_empty() {
         let task = |one: &TaskEvaluation| {
+            let known = |number: f64| (one.episodes > 1).then_some(number);
             json!({
                 "task": one.task, "episodes": one.episodes,
-                "return_mean": one.episode_return.mean, "return_ci95": one.episode_return.half_width,
-                "cost_mean": one.cost.mean, "cost_ci95": one.cost.half_width,
+                "return_mean": one.episode_return.mean, "return_ci95": known(one.episode_return.half_width),
+                "cost_mean": one.cost.mean, "cost_ci95": known(one.cost.half_width),
                 "length_mean": one.length.mean,
             })
         };
@@ -253,14 +272,14 @@ fn with_interval(estimate: &Estimate, episodes: usize) -> String {
 /// Return and costs with their half-widths, each constraint beside its budget, for people.
 pub fn worth(all: &Evaluation) -> String {
     let (returns, cost) = (all.episode_return, all.cost);
-    let with_interval = |one: &Estimate| with_interval(one, all.episodes);
-    let mut text = format!("return {}, cost {}", with_interval(&returns), with_interval(&cost));
+    let of_all = |one: &Estimate| with_interval(one, all.episodes);
+    let mut text = format!("return {}, cost {}", of_all(&returns), of_all(&cost));
     for one in &all.constraints {
         let kept = if one.within() { "within" } else { "over" };
         match &one.term {
             None => text += &format!(" ({kept} the budget of {})", one.budget),
             Some(term) => {
-                let cost = with_interval(&one.cost);
+                let cost = with_interval(&one.cost, episodes_of(all, one));
                 text += &format!(", {term} {cost} ({kept} its budget of {})", one.budget);
             }
         }
@@ -268,11 +287,18 @@ pub fn worth(all: &Evaluation) -> String {
     text
 }
 
+/// The episodes that a constraint was judged by: of one of several tasks, those of this task.
+fn episodes_of(all: &Evaluation, one: &Judgement) -> usize {
+    let task = all.tasks.iter().find(|task| one.term.as_ref() == Some(&task.task));
+    task.map_or(all.episodes, |task| task.episodes)
+}
+
 /// A constraint as JSON.
-pub fn judgement(one: &Judgement) -> Value {
+fn judgement(one: &Judgement, episodes: usize) -> Value {
+    let known = |number: f64| (episodes > 1).then_some(number);
     json!({
-        "term": one.term, "budget": one.budget, "cost_mean": one.cost.mean, "cost_ci95": one.cost.half_width,
-        "cost_interval": [one.cost.low(), one.cost.high()], "cost_interval_by": interval_by(&one.cost),
+        "term": one.term, "budget": one.budget, "cost_mean": one.cost.mean, "cost_ci95": known(one.cost.half_width),
+        "cost_interval": [known(one.cost.low()), known(one.cost.high())], "cost_interval_by": interval_by(&one.cost),
         "tails": spread(&one.tails), "within_budget": one.within(),
     })
 }

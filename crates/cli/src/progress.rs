@@ -175,6 +175,8 @@ fn line(report: &Report, seconds_left: f64) -> String {
                 report.terms.iter().zip(&report.constraint_costs).zip(&report.budgets);
             for ((term, cost), budget) in constraints {
                 match term {
+                    // One of several tasks, none of whose episodes has ended yet.
+                    Some(term) if cost.is_nan() => text += &format!(", {term} - of {budget}"),
                     Some(term) => text += &format!(", {term} {cost:.1} of {budget}"),
                     None => text += &format!(" of {budget}"),
                 }

@@ -45,11 +45,13 @@ fn levels_stand_in_one_animation_and_mistakes_are_named() {
         ("highlights --most-mb -1", "--most-mb"),
         ("highlights zoo:nobody", "the zoo has"),
         ("highlights nothere", "no such run"),
+        ("highlights zoo:RemedyRushLevel1 nothere --out films", "no such run"),
         ("highlights --size 1x1", "64x48"),
     ] {
         let said = folder.refused(line);
         assert!(said.contains(why), "{line}: {said}");
     }
+    assert!(!folder.0.join("films").exists(), "the first film was made before the mistake");
 }
 
 #[test]

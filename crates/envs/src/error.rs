@@ -10,7 +10,7 @@ pub enum EnvError {
     UnknownId {
         /// What was asked for.
         id: String,
-        /// The nearest id that exists.
+        /// The nearest id that exists; empty if none is near.
         nearest: String,
     },
     /// An option has a value that it cannot take.
@@ -87,6 +87,12 @@ pub enum EnvError {
 impl fmt::Display for EnvError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            EnvError::UnknownId { id, nearest } if nearest.is_empty() => {
+                write!(
+                    f,
+                    "no environment is called '{id}'; `hasard envs` lists them all, and a task of your own is named by its file"
+                )
+            }
             EnvError::UnknownId { id, nearest } => {
                 write!(
                     f,

@@ -247,7 +247,7 @@ fn a_second_trainer_and_a_second_run_are_refused() {
     assert!(message.contains("--resume"), "{message}");
     let nowhere = tiny::directory("nowhere");
     let message = tiny::run(Start::RESUME, &nowhere).0.unwrap_err();
-    assert!(message.contains("no run is here"), "{message}");
+    assert!(message.contains("nothing is here"), "{message}");
     fs::remove_dir_all(path).unwrap();
 }
 

@@ -202,7 +202,11 @@ impl Job {
         // as none.
         let written = |path: PathBuf| std::fs::metadata(path).and_then(|data| data.modified()).ok();
         let kept = written(self.evaluation());
-        let stale = kept < written(self.directory.join("selected.json"));
+        // A short run has no selection, and its latest checkpoint is what is evaluated.
+        let checkpoints = std::fs::read_dir(self.directory.join("checkpoints"));
+        let newest =
+            checkpoints.into_iter().flatten().flatten().filter_map(|one| written(one.path())).max();
+        let stale = kept < written(self.directory.join("selected.json")).or(newest);
         let rows = std::fs::read(self.evaluation()).unwrap_or_default();
         let rows = rows.split(|byte| *byte == b'\n').filter(|row| !row.is_empty()).count() as u64;
         kept.is_none() || stale || rows < u64::from(self.evaluate)

@@ -104,8 +104,8 @@ pub const EXPERIMENTS: [Experiment; 18] = {
         of(
             "quick-algorithms",
             "",
-            "the quick preset's 2 million frames of all algorithms on Volcanic Venture level 1 and of the paper's six on Remedy Rush \
-             level 1, a seed each, evaluated on 100 episodes",
+            "2 million frames of the quick preset: all algorithms on Volcanic Venture level 1, the paper's six on Remedy Rush level 1, a \
+             seed each, evaluated on 100 episodes",
         ),
     ]
 };

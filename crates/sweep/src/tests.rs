@@ -280,6 +280,12 @@ fn finished_runs_are_evaluated_once() {
         std::fs::read_to_string(with[0].evaluation()).unwrap().ends_with("onceonce"),
         "it was evaluated twice"
     );
+    // A run without a selection that went on has a newer checkpoint.
+    let newer = with[0].directory.join("checkpoints/frames_200");
+    std::fs::create_dir_all(newer.parent().unwrap()).unwrap();
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(1);
+    std::fs::File::create(newer).unwrap().set_modified(later).unwrap();
+    assert!(with[0].wants_evaluation() && !with[1].wants_evaluation());
 }
 
 /// A caller who stops a sweep: the processes hear of it at their standard input, no further one

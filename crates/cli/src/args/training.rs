@@ -90,7 +90,7 @@ pub struct TrainArgs {
     /// One JSON object a report, as in metrics.jsonl, instead of the progress bar
     #[arg(long)]
     pub json: bool,
-    /// No progress bar
+    /// Print neither progress nor what the run came to: errors alone
     #[arg(short, long)]
     pub quiet: bool,
     /// How to make the environment
@@ -103,7 +103,9 @@ pub struct TrainArgs {
 
 /// `hasard eval`.
 #[derive(Args, Debug)]
-#[command(after_help = "To have it in reports: hasard eval RUN --json > RUN/eval.jsonl")]
+#[command(
+    after_help = "To have it in reports: hasard eval RUN --json > RUN/eval.jsonl (of a run with closing episodes reports take those)"
+)]
 pub struct EvalArgs {
     /// Run directory, agent file, or zoo:NAME for an agent that comes with the program
     #[arg(value_name = "RUN|FILE|zoo:NAME")]
@@ -180,15 +182,14 @@ pub struct SweepArgs {
     #[arg(long, value_name = "FACTOR")]
     pub scale: Option<f64>,
     /// Episodes that the agent of each finished run is evaluated on, kept in its directory as
-    /// eval.jsonl
+    /// eval.jsonl; reports take those of runs without closing episodes
     #[arg(long, value_name = "EPISODES")]
     pub evaluate: Option<u32>,
     /// Another option of hasard train for every run, such as rules=tables or hard; several times
     /// for several
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub option: Vec<String>,
-    /// Run whatever it takes; without it, --scale or --frames, a sweep of more than 48 hours is not
-    /// begun
+    /// Run whatever it takes; without it or --frames, a sweep of more than 48 hours is not begun
     #[arg(long)]
     pub yes: bool,
     /// Print the command lines and run nothing

@@ -107,13 +107,15 @@ pub fn run(args: &HighlightsArgs) -> Outcome {
     if !(args.most_mb > 0.0 && args.most_mb.is_finite()) {
         return Err(Failure::bad(format!("--most-mb {}: give more than 0", args.most_mb)));
     }
-    std::fs::create_dir_all(&args.out).map_err(|error| {
-        Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display()))
-    })?;
     let what = match args.what.as_slice() {
         [] => first_levels(),
         given => given.to_vec(),
     };
+    // A name that is wrong ends it before the first film, not after.
+    what.iter().try_for_each(|agent| places::run(agent).map(drop))?;
+    std::fs::create_dir_all(&args.out).map_err(|error| {
+        Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display()))
+    })?;
     for agent in &what {
         one(args, agent)?;
     }

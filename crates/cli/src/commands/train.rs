@@ -64,6 +64,9 @@ pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
         let config = config.with_all(&settings).map_err(Failure::bad)?;
         (Start::Resume { settings }, config)
     } else {
+        if args.resume && !args.quiet {
+            note!("no run is in {}: one begins there", directory.display());
+        }
         let config = configuration(&with_rules(args, typed))?;
         check_length(args, &config)?;
         super::resume::check_said_once(args, typed)?;

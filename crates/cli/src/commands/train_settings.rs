@@ -7,7 +7,7 @@ use clap::parser::ValueSource;
 use hasard_learn::config::constraint::check_once_each;
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::numbers::check_number;
-use hasard_learn::config::{Constraint, Preset, TrainConfig};
+use hasard_learn::config::{AlgorithmKind, Constraint, Preset, TrainConfig};
 
 /// The command with the rules that its preset belongs to, unless it names others: what made the
 /// paper's tables is both.
@@ -51,6 +51,12 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     // would be blamed for it.
     if let Some(scale) = args.cost_scale {
         check_number("--cost-scale", scale).map_err(Failure::bad)?;
+        if config.algorithm != AlgorithmKind::PpoCost {
+            return Err(Failure::bad(format!(
+                "--cost-scale {scale}: {} takes no cost off its reward; leave it out, or give --algo PPOCost",
+                config.algorithm.name()
+            )));
+        }
         config.algorithm_settings.penalty_scale = scale;
     }
     if let Some(text) = &args.constraint_statistic {
@@ -162,6 +168,15 @@ pub(super) mod tests {
         ] {
             assert_eq!(config(line).unwrap().env.rules, rules, "{line}");
         }
+    }
+
+    /// It was stored, and nothing used it.
+    #[test]
+    fn a_price_of_cost_is_for_the_algorithm_that_has_one() {
+        let message = format!("{:?}", config("--cost-scale 2").unwrap_err());
+        assert!(message.contains("--cost-scale 2: PPOPID takes no cost off"), "{message}");
+        let config = config("--cost-scale 2 --algo PPOCost").unwrap();
+        assert_eq!(config.algorithm_settings.penalty_scale, 2.0);
     }
 
     /// JSON has no NaN: `--set` was blamed for the null in its place.

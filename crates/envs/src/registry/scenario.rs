@@ -175,12 +175,11 @@ impl std::str::FromStr for EnvId {
             // Ids are short and few: the plain edit distance over upper-cased text is quick enough
             // and forgives typos and case.
             let wanted = text.to_uppercase();
-            let nearest =
-                all.iter().min_by_key(|id| edit_distance(&wanted, &id.to_string().to_uppercase()));
-            EnvError::UnknownId {
-                id: excerpt(text),
-                nearest: nearest.map(ToString::to_string).unwrap_or_default(),
-            }
+            let distance = |id: &str| edit_distance(&wanted, &id.to_uppercase());
+            let nearest = all.iter().map(EnvId::to_string).min_by_key(|id| distance(id));
+            // A scenario without its level is near, any other word is not.
+            let near = nearest.filter(|id| distance(id) <= id.len() / 2);
+            EnvError::UnknownId { id: excerpt(text), nearest: near.unwrap_or_default() }
         })
     }
 }
@@ -222,11 +221,14 @@ mod tests {
             ("volcanicventurelevel1-v0", "VolcanicVentureLevel1-v0"),
             ("VolcanicVentureLevel2", "VolcanicVentureLevel2-v0"),
             ("RemedyRushLevel3-v1", "RemedyRushLevel3-v0"),
+            ("RemedyRush", "RemedyRushLevel1-v0"),
         ] {
             let Err(EnvError::UnknownId { nearest: found, .. }) = wrong.parse::<EnvId>() else {
                 panic!("{wrong} was accepted")
             };
             assert_eq!(found, nearest);
         }
+        let far = "LavaGarden-v0".parse::<EnvId>().unwrap_err().to_string();
+        assert!(!far.contains("nearest") && far.contains("by its file"), "{far}");
     }
 }

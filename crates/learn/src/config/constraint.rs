@@ -120,7 +120,7 @@ pub fn check_once_each(constraints: &[Constraint]) -> Result<(), LearnError> {
         None => "the cost".to_string(),
         Some(term) => format!("'{term}'"),
     };
-    Err(LearnError::Config(format!("{cost} has two budgets; give it one")))
+    Err(LearnError::Config(format!("{cost} has two budgets; give it one --safety-budget")))
 }
 
 /// Where each constraint's cost is found among the terms; unknown names are refused.

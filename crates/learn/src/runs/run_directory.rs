@@ -276,6 +276,12 @@ pub fn damaged_selection(path: &Path) -> Option<String> {
 /// The settings of the run in a directory.
 pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
     let file = path.join("config.json");
+    if !path.exists() {
+        return Err(LearnError::content(
+            path,
+            "nothing is here; give the directory of `hasard train --out`",
+        ));
+    }
     if !file.exists() {
         return Err(LearnError::content(
             path,

@@ -2,6 +2,7 @@
 //!
 //! Long because it reads the settings of every version of the program.
 
+use super::own::OwnTask;
 use super::{Constraint, Warning};
 use crate::escape::one_line;
 use hasard_envs::{RuleSet, Scenario};
@@ -77,6 +78,8 @@ pub struct Config {
     pub env: String,
     /// The file of a task of one's own, where the run says.
     pub file: Option<String>,
+    /// The files of several tasks, by the names of their scenarios.
+    pub files: BTreeMap<String, String>,
     /// Name of the scenario, as in the id.
     pub scenario: String,
     /// Its level; the last one of a curriculum.
@@ -158,11 +161,15 @@ impl Config {
             })
         };
         let env = take("env")?;
+        let own_tasks = OwnTask::all(object.get("env").unwrap_or(&Value::Null));
+        let budget_of = |scenario: &str, released: bool| {
+            let rules = if released { RuleSet::Released } else { RuleSet::Paper };
+            let own = own_tasks.iter().find(|own| own.is(scenario));
+            own.map_or_else(|| default_budget(scenario, released), |own| own.budget(rules))
+        };
         let usual_of_task = |one: &Constraint| {
             let task = one.term.as_deref().filter(|term| env.split(',').any(|id| id == *term));
-            task.is_some_and(|task| {
-                one.budget == default_budget(&scenario_and_level(task).0, false)
-            })
+            task.is_some_and(|task| one.budget == budget_of(&scenario_and_level(task).0, false))
         };
         let algo = take("algo")?;
         let seed = take("seed")?;
@@ -195,7 +202,7 @@ impl Config {
         let released =
             options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
         let hard = options.get("hard").is_some_and(|hard| hard == "true");
-        let own_budget = if hard { 0.0 } else { default_budget(&scenario, released) };
+        let own_budget = if hard { 0.0 } else { budget_of(&scenario, released) };
         let given = options.get("safety_budget").map(|text| text.parse::<f64>());
         let safety_budget = match given {
             None => own_budget,
@@ -209,9 +216,7 @@ impl Config {
         };
         // The budgets of the paper (50) and of the released code (5) for Armament Burden are both
         // "the scenario's own".
-        if safety_budget == own_budget
-            || (!hard && safety_budget == default_budget(&scenario, false))
-        {
+        if safety_budget == own_budget || (!hard && safety_budget == budget_of(&scenario, false)) {
             options.remove("safety_budget");
         }
         let tables = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("tables"));
@@ -280,6 +285,7 @@ impl Config {
         Ok(Config {
             env,
             file,
+            files: own_tasks.into_iter().map(OwnTask::named).collect(),
             scenario,
             level,
             algo,

@@ -8,6 +8,7 @@ mod episodes;
 mod evaluated;
 mod heatmap;
 mod metrics;
+mod own;
 mod safety;
 mod selected;
 mod task;

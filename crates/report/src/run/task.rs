@@ -27,6 +27,7 @@ impl Run {
         let mut config = self.config.clone();
         (config.scenario, config.level) = scenario_and_level(task);
         config.env = task.to_owned();
+        config.file = config.files.get(&config.scenario).cloned();
         let names: Vec<&str> =
             self.config.env.split(',').map(|id| id.trim().trim_end_matches("-v0")).collect();
         config.options.insert(TOGETHER.into(), names.join(" + "));

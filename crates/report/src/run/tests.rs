@@ -173,6 +173,32 @@ fn the_trainers_own_layout_is_understood() {
     );
 }
 
+/// What the file says is usual is not named among the options, so that the run stands in the
+/// tables.
+#[test]
+fn a_task_of_ones_own_has_its_files_budget() {
+    let text = hasard_envs::own::template("ReportGarden");
+    let file = serde_json::json!({ "path": "garden.toml", "hash": "", "text": text });
+    let parse = |env: serde_json::Value, constraints: serde_json::Value| {
+        let config = serde_json::json!({ "algorithm": "PPOPID", "env": env, "seed": 1, "constraints": constraints });
+        Config::parse(&config.to_string()).unwrap()
+    };
+    let alone = serde_json::json!({ "id": "ReportGarden-v0", "scenario_file": file });
+    for (budget, named) in [(25.0, false), (50.0, true)] {
+        let constraints = serde_json::json!([{ "term": null, "budget": budget }]);
+        let config = parse(alone.clone(), constraints);
+        assert_eq!(config.options.contains_key("safety_budget"), named, "{budget}");
+        assert_eq!((config.safety_budget, config.task()), (budget, "garden.toml"));
+    }
+    let both = serde_json::json!({ "id": "RemedyRushLevel1-v0,ReportGarden-v0", "scenario_files": [file] });
+    let constraints = serde_json::json!([
+        { "term": "RemedyRushLevel1-v0", "budget": 5.0 }, { "term": "ReportGarden-v0", "budget": 25.0 },
+    ]);
+    let config = parse(both, constraints);
+    assert!(!config.options.contains_key("constraints"), "{:?}", config.options);
+    assert_eq!(config.files["ReportGarden"], "garden.toml");
+}
+
 /// The end of a run is its last fiftieth of frames, however many reports the clock put there.
 #[test]
 fn the_last_ten_points_are_cut_by_frames() {

@@ -59,9 +59,13 @@ pub fn run(args: &SweepArgs) -> Outcome {
     } else {
         say!("{}", plan.line());
     }
-    let chosen = chooses_frames || args.yes || args.scale.is_some() || args.frames.is_some();
+    // A share of the paper's length may still be days; frames are a length that was chosen.
+    let chosen = chooses_frames || args.yes || args.frames.is_some();
     if let Some(hours) = plan.hours.filter(|&hours| hours > HOURS_WITHOUT_ASKING && !chosen) {
-        let (what, day) = (args.what.to_string_lossy(), plan::two_digits(24.0 / hours));
+        let (what, day) = (
+            args.what.to_string_lossy(),
+            plan::two_digits(24.0 / hours * args.scale.unwrap_or(1.0)),
+        );
         return Err(Failure::bad(format!(
             "sweep {what}: about {}; give --yes to run all of it, --scale {day} for a day of it, or --frames for the length of each run",
             plan::span(hours)
