@@ -122,7 +122,15 @@ fn a_run_says_first_what_it_is_worth() {
     let differ = browser.script(&format!(
         "return {folded}.filter((row) => row.cells[1].textContent != row.cells[2].textContent).map((row) => row.querySelector('code').textContent)"
     ));
-    let own = ["version", "seed", "frames", "device", "learning.threads", "sampling.samplers"];
+    let own = [
+        "version",
+        "seed",
+        "frames",
+        "device",
+        "learning.schedule_frames",
+        "learning.threads",
+        "sampling.samplers",
+    ];
     for name in differ.as_array().unwrap() {
         assert!(own.contains(&name.as_str().unwrap()), "{name} is folded away: {differ}");
     }
