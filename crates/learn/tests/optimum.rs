@@ -131,7 +131,7 @@ fn constrained_algorithms_end_near_the_best_return_within_the_budget() {
     }
 }
 
-/// Second-order steps are large and few: two passes over a rollout would move twice as far as the
+/// Second-order steps are large and few: two epochs on a rollout would move twice as far as the
 /// trust region allows.
 fn second_order(algorithm: AlgorithmKind) -> TrainConfig {
     let mut config = quick(algorithm);

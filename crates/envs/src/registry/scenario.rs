@@ -176,10 +176,10 @@ impl std::str::FromStr for EnvId {
             // and forgives typos and case.
             let wanted = text.to_uppercase();
             let distance = |id: &str| edit_distance(&wanted, &id.to_uppercase());
-            let nearest = all.iter().map(EnvId::to_string).min_by_key(|id| distance(id));
             // A scenario without its level is near, any other word is not.
-            let near = nearest.filter(|id| distance(id) <= id.len() / 2);
-            EnvError::UnknownId { id: excerpt(text), nearest: near.unwrap_or_default() }
+            let near = all.iter().map(EnvId::to_string).filter(|id| distance(id) <= id.len() / 2);
+            let nearest = near.min_by_key(|id| distance(id)).unwrap_or_default();
+            EnvError::UnknownId { id: excerpt(text), nearest }
         })
     }
 }

@@ -79,11 +79,11 @@ fn one() -> f64 {
 /// How the networks learn.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct LearningConfig {
-    /// Passes over a rollout.
+    /// Epochs on a rollout.
     pub epochs: usize,
-    /// Parts that the rollout's trajectories are dealt into in each pass.
+    /// Parts that the rollout's trajectories are dealt into in each epoch.
     pub minibatches: usize,
-    /// Before every pass but the first, advantages and targets are estimated anew from what the
+    /// Before every epoch but the first, advantages and targets are estimated anew from what the
     /// critics say by then (Andrychowicz et al. 2020, arXiv 2006.05990), for a forward pass more.
     #[serde(default)]
     pub recompute_advantages: bool,
@@ -125,7 +125,7 @@ pub struct LearningConfig {
     /// Adam's epsilon.
     pub adam_epsilon: f64,
     /// Divergence of the policy from the one that acted, mean over the rollout after a pass, beyond
-    /// which the rollout is learned from no further; `null` for all passes in any case.
+    /// which the rollout is learned from no further; `null` for all epochs in any case.
     #[serde(default)]
     pub target_kl: Option<f64>,
     /// Learning rate of critics that are networks of their own; `null` for that of the policy. It
@@ -173,14 +173,14 @@ pub struct LearningConfig {
     /// `in-view`.
     #[serde(default)]
     pub critic_inputs: Vec<CriticInput>,
-    /// After every so many rollouts the critics make passes of their own, in which the policy is
+    /// After every so many rollouts the critics make epochs of their own, in which the policy is
     /// held where it is (Cobbe et al. 2021, arXiv 2009.04416); `null` for none.
     #[serde(default)]
     pub value_phase: Option<u64>,
-    /// How many passes these are, over the latest rollout.
+    /// How many epochs these are, over the latest rollout.
     #[serde(default = "six")]
     pub value_phase_passes: usize,
-    /// Weight of the policy's divergence from what it was, in these passes.
+    /// Weight of the policy's divergence from what it was, in these epochs.
     #[serde(default = "one")]
     pub value_phase_clone: f64,
     /// Weight of a loss by which what policy and critics are computed from predicts the depth of

@@ -23,7 +23,7 @@ impl TrainConfig {
         let episode_steps = own_steps.unwrap_or(EPISODE_TICS / env.frame_skip.max(1)).max(1);
         let scenario = env.scenario();
         let separate = algorithm.separates_networks();
-        // As their papers have it: ten passes over minibatches of 64 steps. The benchmark's own
+        // As their papers have it: ten epochs of minibatches of 64 steps. The benchmark's own
         // algorithms pass once over all.
         let repeats =
             matches!(algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup | AlgorithmKind::Ipo);
