@@ -228,7 +228,7 @@ mod tests {
             };
             assert_eq!(found, nearest);
         }
-        let far = "LavaGarden-v0".parse::<EnvId>().unwrap_err().to_string();
+        let far = "SafetyPointGoal1Gymnasium-v0".parse::<EnvId>().unwrap_err().to_string();
         assert!(!far.contains("nearest") && far.contains("by its file"), "{far}");
     }
 }
