@@ -262,10 +262,12 @@ fn a_report_on_many_experiments() {
 
     // Random play that returns more than PPO ever did: no scale, and the report says where.
     let high = "{\"env\":\"VolcanicVentureLevel1-v0\",\"rules\":\"tables\",\"return\":1e6,\"cost\":1,\"length\":525}\n";
-    std::fs::write(runs.join("random-more.jsonl"), high.repeat(40)).unwrap();
+    let hard = "{\"env\":\"RemedyRushLevel1-v0\",\"rules\":\"tables\",\"hard\":true,\"return\":1e6,\"cost\":1,\"length\":525}\n";
+    std::fs::write(runs.join("random-more.jsonl"), (high.to_owned() + hard).repeat(40)).unwrap();
     write_report(std::slice::from_ref(&runs), &again, "Synthetic runs").unwrap();
     let text = std::fs::read_to_string(again.join("report.md")).unwrap();
-    assert!(text.contains("than a random policy: VolcanicVentureLevel1-v0."), "{safety}");
+    let where_not = "than a random policy: RemedyRushLevel1-v0 (hard), VolcanicVentureLevel1-v0.";
+    assert!(text.contains(where_not), "{safety}");
     let row = text
         .split("## Safety")
         .nth(1)

@@ -91,7 +91,12 @@ impl<'a> Baselines<'a> {
                     && self.ppo(group).is_some()
                     && self.scale(group).is_none()
             })
-            .map(|group| group.config().env.clone())
+            .map(|group| {
+                let config = group.config();
+                let hard = if config.hard() { " (hard)" } else { "" };
+                let full = if config.full_actions() { " (full actions)" } else { "" };
+                format!("{}{hard}{full}", config.env)
+            })
             .collect();
         tasks.sort();
         tasks.dedup();
