@@ -13,7 +13,7 @@ pub const FIGURES: &str = "figures";
 #[must_use]
 pub fn markdown(document: &Document) -> String {
     let mut text = format!(
-        "# {}\n\n{}\n",
+        "# {}\n\n{}\n\nA ✓ stands for green ground, a (✓) for green letters.\n",
         escape_markdown(&document.title),
         escape_markdown(&document.subtitle)
     );

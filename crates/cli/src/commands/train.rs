@@ -171,7 +171,8 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     }
     progress.finish();
     if progress.is_shown() {
-        if let Some(first) = &first {
+        // Of a single report one line says all.
+        if let Some(first) = first.as_ref().filter(|first| first.frames < summary.last.frames) {
             note!("first: {}", line(first));
         }
         if heard {
@@ -192,6 +193,8 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         // What the run is worth comes last, where the eye rests.
         if let Some(selection) = &summary.selection {
             headline(selection, summary.stopped).iter().for_each(|line| note!("{line}"));
+        } else if !summary.stopped {
+            note!("too short to be evaluated: hasard eval {run} plays its latest checkpoint");
         }
     }
     rows.check(&go_on)?;
