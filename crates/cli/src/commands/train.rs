@@ -186,6 +186,9 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
                 summary.last.frames
             );
         }
+        if summary.selection.is_none() && !summary.stopped {
+            note!("too short to be evaluated on the way: its latest checkpoint is what is played");
+        }
         match summary.stopped {
             true => note!("stopped; go on with: {go_on}"),
             false => note!("{name} is a run directory: hasard eval {run}, hasard report {run}"),
@@ -193,8 +196,6 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         // What the run is worth comes last, where the eye rests.
         if let Some(selection) = &summary.selection {
             headline(selection, summary.stopped).iter().for_each(|line| note!("{line}"));
-        } else if !summary.stopped {
-            note!("too short to be evaluated: hasard eval {run} plays its latest checkpoint");
         }
     }
     rows.check(&go_on)?;
