@@ -3,18 +3,18 @@
 
     python3 tools/campaign_answers.py docs/results/campaign --hasard target/release/hasard
 
-Scores are those of docs/campaign.md: (R - random) / (PPO - random) of the last policy if the upper 95 % end of its cost is within the
-budget, else 0. An environment where PPO's episodes do not show that it returns more than random play has no scale and is left out, by
-name. Seeds are those that all runs of a hypothesis have, PPO's among them. Intervals: of single environments Student's t over seeds; over
-environments 95 % of 2,000 bootstrap samples that draw seeds within each. A hypothesis whose runs are not there is open, and so is one
-with a single seed.
+Scores are those of docs/campaign.md: (R - random) / (PPO - random) of the last policy if the upper 95 % end of its cost is within
+the budget, else 0. An environment where PPO's episodes do not show that it returns more than random play has no scale and is left
+out, by name. Seeds are those that all runs of a hypothesis have, PPO's among them. Intervals: of single environments Student's t
+over seeds; over environments 95 % of 2,000 bootstrap samples that draw seeds within each. A hypothesis whose runs are not there is
+open, and so is one with a single seed.
 """
 
 import argparse
 import statistics
 from pathlib import Path
 
-from campaign_runs import SCENARIOS, Campaign, common_seeds, difference_of_means, interval, iqm, student, whole
+from campaign_runs import SCENARIOS, Campaign, Run, common_seeds, difference_of_means, interval, iqm, of_seeds, student
 
 NO_RUNS = ("open", "no runs", set())
 ONE_SEED = "open: one seed has no interval"
@@ -40,13 +40,13 @@ def difference(strata):
     return iqm([value - sides[(False, env)] for (first, env), value in sides.items() if first])
 
 
-def scored(campaign, lists):
-    """{key: (env, runs)} as {key: feasible scores} of the seeds that all have; the environments without a scale; the seeds."""
+def scored(campaign, lists, score=Run.feasible):
+    """{key: (env, runs)} as {key: scores} of the seeds that all have; the environments without a scale; the seeds."""
     envs = {env for env, _ in lists.values()}
     seeds = common_seeds([*(runs for _, runs in lists.values()), *(campaign.of("PPO", env) for env in envs)])
     scales = {env: campaign.scale(env, seeds) for env in envs}
-    strata = {key: [run.feasible(scales[env]) for run in whole([runs], seeds)[0]] for key, (env, runs) in lists.items() if scales[env]}
-    return strata, sorted(env for env in envs if not scales[env]), seeds
+    kept = {key: [score(run, scales[env]) for run in of_seeds(runs, seeds)] for key, (env, runs) in lists.items() if scales[env]}
+    return kept, sorted(env for env in envs if not scales[env]), seeds
 
 
 def beside(campaign, pairs, words):
@@ -75,7 +75,7 @@ def h2(campaign):
         seeds = common_seeds(lists.values())
         all_seeds |= seeds
         for env, runs in lists.items():
-            (runs,), budget = whole([runs], seeds), campaign.budget.get(env)
+            runs, budget = of_seeds(runs, seeds), campaign.budget.get(env)
             if not runs:
                 continue
             costs = [run.cost for run in runs]
@@ -94,15 +94,8 @@ def h3(campaign):
     for env in level(campaign, 1):
         shares = {share: campaign.of("PPOLag", env, budget=share * campaign.budget.get(env, 0)) for share in (0.5, 1.0, 1.5)}
         if all(shares.values()):
-            lists.update({(env, share): runs for share, runs in shares.items()})
-    envs = {env for env, _ in lists}
-    seeds = common_seeds([*lists.values(), *(campaign.of("PPO", env) for env in envs)])
-    scales = {env: campaign.scale(env, seeds) for env in envs}
-    strata = {
-        (env, share): [run.normalised(scales[env]) for run in whole([runs], seeds)[0]]
-        for (env, share), runs in lists.items()
-        if scales[env]
-    }
+            lists.update({(env, share): (env, runs) for share, runs in shares.items()})
+    strata, _, seeds = scored(campaign, lists, Run.normalised)
     if not strata:
         return NO_RUNS
 
@@ -135,7 +128,7 @@ def h6(campaign):
     lists = {env: campaign.of("PPOLag", env, hard=True) for env in level(campaign, 1)}
     seeds, states, texts = common_seeds(lists.values()), [], []
     for env, runs in lists.items():
-        earned, (chance, _) = [run.earned for run in runs if run.seed in seeds], campaign.chance(env, hard=True)
+        earned, (chance, _) = [run.earned for run in of_seeds(runs, seeds)], campaign.chance(env, hard=True)
         if not earned or not chance:
             continue
         text = f"{env.removesuffix('-v0')} {statistics.fmean(earned):.2f} (random {statistics.fmean(chance):.2f}"

@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 from campaign_answers import table as answers
-from campaign_runs import SCENARIOS, Campaign, common_seeds, iqm, whole
+from campaign_runs import SCENARIOS, Campaign, common_seeds, iqm, of_seeds
 
 WORDS = {name: re.sub(r"(?<!^)(?=[A-Z])", " ", name).replace("Detonators", "Detonator's") for name in SCENARIOS}
 PAPER = ("PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O")
@@ -46,7 +46,7 @@ def grid(head, columns, rows, chance=None, budgets_differ=False):
         return "No runs yet.", ()
     common = common_seeds(cells.values())
     lines = [f"| {head} | " + " | ".join(columns) + " |", "|---|" + "--:|" * len(columns)]
-    kept = {key: [run for run in runs if run.seed in common] for key, runs in cells.items()}
+    kept = {key: of_seeds(runs, common) for key, runs in cells.items()}
     best = {}
     for column in columns:
         safe = {row: statistics.fmean(run.earned for run in kept[row, column]) for row in rows if kept[row, column] and all(run.within for run in kept[row, column])}
@@ -87,7 +87,7 @@ def feasible(campaign, level, algorithms):
     envs = [env for env in envs if scales[env]]
     lines = ["| algorithm | " + " | ".join(map(titled, envs)) + " | mean | IQM |", "|---|" + "--:|" * (len(envs) + 2)]
     for name in algorithms:
-        scores = [[run.feasible(scales[env]) for run in whole([runs[name, env]], common)[0]] for env in envs]
+        scores = [[run.feasible(scales[env]) for run in of_seeds(runs[name, env], common)] for env in envs]
         means = [statistics.fmean(some) for some in scores]
         lines.append(f"| {name} | " + " | ".join(f"{one:.2f}" for one in [*means, statistics.fmean(means), iqm(sum(scores, []))]) + " |")
     return "\n".join(lines), sorted(common)

@@ -80,11 +80,11 @@ class Campaign:
 
     def scale(self, env, seeds):
         """What random play and PPO return, PPO over the seeds; None unless PPO's episodes show that it returns more."""
-        chance, ppo = self.chance(env)[0], whole([self.of("PPO", env)], seeds)
-        if not chance or not ppo[0]:
+        chance, ppo = self.chance(env)[0], of_seeds(self.of("PPO", env), seeds)
+        if not chance or not ppo:
             return None
-        least = statistics.fmean(run.earned - run.earned_half for run in ppo[0])
-        return (statistics.fmean(chance), statistics.fmean(run.earned for run in ppo[0])) if least > student(chance)[1] else None
+        least = statistics.fmean(run.earned - run.earned_half for run in ppo)
+        return (statistics.fmean(chance), statistics.fmean(run.earned for run in ppo)) if least > student(chance)[1] else None
 
 
 def common_seeds(lists):
@@ -93,9 +93,8 @@ def common_seeds(lists):
     return set.intersection(*seeds) if seeds else set()
 
 
-def whole(lists, seeds):
-    """The lists with the runs of these seeds alone."""
-    return [[run for run in runs if run.seed in seeds] for runs in lists]
+def of_seeds(runs, seeds):
+    return [run for run in runs if run.seed in seeds]
 
 
 def iqm(numbers):

@@ -1,4 +1,4 @@
-"""Plays the published worlds at random in the published engine and keeps what it shows and reports of chosen moments.
+"""Plays the published worlds at random in ViZDoom and keeps what it shows and reports of chosen moments.
 
     pip install vizdoom==1.3.2 hasard==0.2.0 numpy opencv-python-headless
     python tools/dump_published_scenes.py OUT [--scenarios a,b] [--levels 1,2,3] [--moments 40] [--size 160X120]

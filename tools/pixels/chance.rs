@@ -1,4 +1,4 @@
-//! What chance gave the squares of rockets in the published engine (docs/results/pixels.md,
+//! What chance gave the squares of rockets in ViZDoom (docs/results/pixels.md,
 //! "Squares").
 //!
 //! Its pictures have a stream of chance of their own, begun anew with every episode, whose bytes

@@ -1,4 +1,4 @@
-//! What the published engine showed and reported of chosen moments.
+//! What ViZDoom showed and reported of chosen moments.
 
 use crate::Any;
 use serde::Deserialize;
@@ -27,12 +27,12 @@ pub struct Level {
 pub struct Moment {
     pub number: usize,
     pub tic: u32,
-    /// By the names of the published engine.
+    /// By the names of ViZDoom.
     pub variables: BTreeMap<String, f64>,
     /// Of each sector.
     pub floors: Vec<f64>,
     pub ceilings: Vec<f64>,
-    /// What the published engine's own chance began with in the episode, if it was noted, and the
+    /// What ViZDoom's own chance began with in the episode, if it was noted, and the
     /// number of the episode.
     #[serde(default)]
     pub chance: Option<u32>,

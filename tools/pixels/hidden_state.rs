@@ -1,4 +1,4 @@
-//! The state of a moment that the published engine does not report: what explains its picture best.
+//! The state of a moment that ViZDoom does not report: what explains its picture best.
 
 use crate::dump::{Moment, Pictures};
 use crate::pose::{Posed, Stage};

@@ -1,4 +1,4 @@
-//! The same moments as the published engine draws them and as this one does: how many pixels are
+//! The same moments as ViZDoom draws them and as this one does: how many pixels are
 //! equal.
 //!
 //! ```sh
@@ -10,9 +10,9 @@
 //! the published packages use, named in that file. `--out` writes a picture of every moment,
 //! theirs, ours and the difference beside one another; `--list` prints a line for every moment.
 //! Pixels are compared by what the published label says of them: 0 and 1 are the world, 255 the
-//! weapon, others things. What the published engine does not report of a moment is found by trying.
+//! weapon, others things. What ViZDoom does not report of a moment is found by trying.
 //!
-//! Squares that rockets shed lie where the published engine's chance has them, if the scenes say
+//! Squares that rockets shed lie where ViZDoom's chance has them, if the scenes say
 //! what that began with.
 
 mod chance;

@@ -1,4 +1,4 @@
-//! A world of ours as the published engine reported a moment.
+//! A world of ours as ViZDoom reported a moment.
 
 use crate::dump::{Level, Moment};
 use crate::{Any, chance};

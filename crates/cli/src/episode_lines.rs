@@ -231,8 +231,7 @@ fn tails_text(tails: &Tails, budget: Option<f64>) -> String {
 pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
     let constraints: Vec<Value> =
         all.constraints.iter().map(|one| judgement(one, episodes_of(all, one))).collect();
-    // Of a single episode no interval is known.
-    let known = |number: f64| (all.episodes > 1).then_some(number);
+    let known = |number: f64| of_several(number, all.episodes);
     let whole = all.constraints.iter().find(|one| one.term.is_none());
     let mut row = json!({ "summary": {
         "episodes": all.episodes,
@@ -248,7 +247,7 @@ pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
     }});
     if !all.tasks.is_empty() {
         let task = |one: &TaskEvaluation| {
-            let known = |number: f64| (one.episodes > 1).then_some(number);
+            let known = |number: f64| of_several(number, one.episodes);
             json!({
                 "task": one.task, "episodes": one.episodes,
                 "return_mean": one.episode_return.mean, "return_ci95": known(one.episode_return.half_width),
@@ -261,11 +260,16 @@ pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
     row
 }
 
-/// A mean with its half-width, which a single episode does not have.
+/// A number of an interval, which a single episode does not have.
+fn of_several(number: f64, episodes: usize) -> Option<f64> {
+    (episodes > 1).then_some(number)
+}
+
+/// A mean with its half-width, if it has one.
 fn with_interval(estimate: &Estimate, episodes: usize) -> String {
-    match episodes {
-        0 | 1 => format!("{:.3}", estimate.mean),
-        _ => format!("{:.3} +- {:.3}", estimate.mean, estimate.half_width),
+    match of_several(estimate.half_width, episodes) {
+        None => format!("{:.3}", estimate.mean),
+        Some(half_width) => format!("{:.3} +- {half_width:.3}", estimate.mean),
     }
 }
 
@@ -295,7 +299,7 @@ fn episodes_of(all: &Evaluation, one: &Judgement) -> usize {
 
 /// A constraint as JSON.
 fn judgement(one: &Judgement, episodes: usize) -> Value {
-    let known = |number: f64| (episodes > 1).then_some(number);
+    let known = |number: f64| of_several(number, episodes);
     json!({
         "term": one.term, "budget": one.budget, "cost_mean": one.cost.mean, "cost_ci95": known(one.cost.half_width),
         "cost_interval": [known(one.cost.low()), known(one.cost.high())], "cost_interval_by": interval_by(&one.cost),

@@ -161,10 +161,8 @@ impl Job {
     /// Whether a run whose rows have reached their end was not killed before its last checkpoint,
     /// nor before the closing episodes of the one that it selected.
     fn is_closed(&self, frames: u64) -> bool {
-        let entries =
-            std::fs::read_dir(self.directory.join("checkpoints")).into_iter().flatten().flatten();
         let names: Vec<String> =
-            entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+            self.checkpoints().filter_map(|entry| entry.file_name().into_string().ok()).collect();
         let newest = |kind: &str| {
             names.iter().filter_map(|name| name.strip_prefix(kind)?.parse::<u64>().ok()).max()
         };
@@ -180,6 +178,11 @@ impl Job {
             None => written("hand_out.json")["frames"] == best,
         });
         saved && closed
+    }
+
+    /// What lies among the run's checkpoints.
+    fn checkpoints(&self) -> impl Iterator<Item = std::fs::DirEntry> {
+        std::fs::read_dir(self.directory.join("checkpoints")).into_iter().flatten().flatten()
     }
 
     /// The arguments that take the run from where it is to its end.
@@ -203,9 +206,7 @@ impl Job {
         let written = |path: PathBuf| std::fs::metadata(path).and_then(|data| data.modified()).ok();
         let kept = written(self.evaluation());
         // A short run has no selection, and its latest checkpoint is what is evaluated.
-        let checkpoints = std::fs::read_dir(self.directory.join("checkpoints"));
-        let newest =
-            checkpoints.into_iter().flatten().flatten().filter_map(|one| written(one.path())).max();
+        let newest = self.checkpoints().filter_map(|entry| written(entry.path())).max();
         let stale = kept < written(self.directory.join("selected.json")).or(newest);
         let rows = std::fs::read(self.evaluation()).unwrap_or_default();
         let rows = rows.split(|byte| *byte == b'\n').filter(|row| !row.is_empty()).count() as u64;

@@ -112,14 +112,14 @@ pub fn run(args: &HighlightsArgs) -> Outcome {
         given => given.to_vec(),
     };
     // A name that is wrong ends it before the first film, not after.
-    what.iter().try_for_each(|agent| places::run(agent).map(drop))?;
+    let agents = what.iter().map(|agent| places::run(agent)).collect::<Result<Vec<_>, _>>()?;
     std::fs::create_dir_all(&args.out).map_err(|error| {
         Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display()))
     })?;
-    for agent in &what {
+    for agent in &agents {
         one(args, agent)?;
     }
-    if args.levels { levels(args, &what) } else { Ok(()) }
+    if args.levels { levels(args, &agents) } else { Ok(()) }
 }
 
 /// The zoo's agents of level 1, by their names.
@@ -133,10 +133,9 @@ fn most_bytes(args: &HighlightsArgs) -> u64 {
 }
 
 /// An agent's best moment.
-fn one(args: &HighlightsArgs, agent: &OsString) -> Outcome {
-    let place = places::run(agent)?;
+fn one(args: &HighlightsArgs, place: &Path) -> Outcome {
     let looks = EnvOptions::default();
-    let mut performance = Performance::of_run(&place, &looks, Elsewhere::default(), args.seed)?;
+    let mut performance = Performance::of_run(place, &looks, Elsewhere::default(), args.seed)?;
     let mut ticker = Ticker::new(args.episodes.into(), "episodes");
     let mut best: Option<Played> = None;
     for seed in args.seed..args.seed.saturating_add(args.episodes.into()) {
@@ -201,14 +200,13 @@ fn bytes_of(path: &Path) -> u64 {
 }
 
 /// All levels of the agents' scenarios, a column each, in one animation.
-fn levels(args: &HighlightsArgs, what: &[OsString]) -> Outcome {
+fn levels(args: &HighlightsArgs, agents: &[PathBuf]) -> Outcome {
     let mut rows: Vec<Vec<(String, Vec<Picture>)>> = Vec::new();
-    for agent in what {
-        let place: PathBuf = places::run(agent)?;
-        let trained = hasard_learn::runs::agent::run_config(&place).map_err(Failure::bad)?.env.id;
+    for place in agents {
+        let trained = hasard_learn::runs::agent::run_config(place).map_err(Failure::bad)?.env.id;
         let scenario = trained.parse::<EnvId>().map_err(Failure::bad)?.scenario;
         for (row, id) in scenario.environments().take(3).enumerate() {
-            let all = level(args, &place, id)?;
+            let all = level(args, place, id)?;
             if rows.len() <= row {
                 rows.push(Vec::new());
             }
@@ -222,7 +220,7 @@ fn levels(args: &HighlightsArgs, what: &[OsString]) -> Outcome {
             .iter()
             .filter_map(|(name, all)| Some(Cell::new(all.get(moment).or(all.last())?, name)))
             .collect();
-        grid(&panels, what.len(), 1)
+        grid(&panels, agents.len(), 1)
     };
     let all: Vec<Picture> = (0..moments).map(sheet).collect();
     let path = args.out.join("levels.gif");

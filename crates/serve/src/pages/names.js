@@ -20,7 +20,7 @@ export function path_rest(run) {
 const LISTED = ['preset', 'rules', 'hard', 'full_actions', 'observation', 'constraints', 'safety_budget', 'cost_scale', 'curriculum', 'frame_skip', 'frame_stack'];
 const word = (name, value) => (name === 'preset' ? value : name === 'rules' ? (value === 'paper' ? '' : `rules ${value}`) : value === 'true' ? name.replaceAll('_', ' ') : `${name.replace(/^.*\./, '').replaceAll('_', ' ')} ${value}`);
 
-// A few words for each experiment: what always stands beside the algorithm, and what distinguishes those that would read the same.
+// A few words for each experiment: what always stands beside the algorithm, and what distinguishes those that read the same.
 export function labels(experiments) {
   const first = experiments.map(({ options }) => LISTED.filter((name) => options[name] != null).map((name) => word(name, options[name])).filter(Boolean));
   const look = (k) => `${experiments[k].env} ${experiments[k].algo} ${first[k]}`;

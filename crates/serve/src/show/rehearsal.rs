@@ -1,5 +1,5 @@
 //! An episode acted out once, without pictures for people: what every step brought is known before
-//! it is shown, so that the time line shows harm to come, and every step can be jumped to by
+//! it is shown, so that the time line shows costs to come, and every step can be jumped to by
 //! acting the same again.
 
 use super::performer::Performer;
