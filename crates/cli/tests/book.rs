@@ -47,7 +47,12 @@ fn shortened(command: &str, number: usize) -> String {
     let mut rest = words.iter();
     while let Some(word) = rest.next() {
         let film = words[0] == "eval" && word == "-o";
-        if film || matches!(word.as_str(), "--frames" | "--episodes" | "--threads" | "--seconds") {
+        if film
+            || matches!(
+                word.as_str(),
+                "--frames" | "--episodes" | "--threads" | "--seconds" | "--worst"
+            )
+        {
             rest.next();
         } else {
             kept.push(word.as_str());
@@ -66,7 +71,7 @@ fn shortened(command: &str, number: usize) -> String {
             format!("--frames {frames} {out} --envs {tasks} {each} {SMALL}")
         }
         // A whole episode as a film of 640x480 would take as long as all others together.
-        "eval" if has("--worst") => "--episodes 1 -o worst.gif".into(),
+        "eval" if has("--worst") => "--episodes 1 --worst 1 -o worst.gif".into(),
         "eval" => "--episodes 3".into(),
         "rollout" | "claim" => "--episodes 2".into(),
         "record" => "--steps 3".into(),

@@ -273,6 +273,8 @@ fn an_evaluation_shows_the_tails() {
     folder.ok(&format!("train RemedyRushLevel1-v0 --out plain {}", small.replace("PPOLag", "PPO")));
     assert!(folder.refused("eval plain --calibration table.csv").contains("critics of costs"));
     assert!(folder.refused("eval run --worst 1 -o worst.avi").contains(".mp4"));
+    let many = folder.refused("eval run --episodes 2 --worst 3");
+    assert!(many.contains("--worst 3") && many.contains("--episodes 2"), "{many}");
 }
 
 /// Under other rules than a run's own its default budget is theirs; one that was asked for stays.

@@ -39,6 +39,14 @@ pub fn run(args: &EvalArgs) -> Outcome {
             out.display()
         )));
     }
+    if let Some((count, _)) = film
+        && count > args.episodes as usize
+    {
+        return Err(Failure::bad(format!(
+            "--worst {count}: more than --episodes {}; lower the one or raise the other",
+            args.episodes
+        )));
+    }
     let run = places::run(&args.run)?;
     let mut config = run_config(&run).map_err(Failure::bad)?;
     let actions_of = args.rules.map(|rules| play_under(&mut config, rules.into())).transpose()?;

@@ -154,17 +154,31 @@ fn word(name: &str, value: Option<&Value>) -> String {
     match (name, value.and_then(Value::as_bool)) {
         ("sampling.synchronous", Some(true)) => "sampling and learning in turn".into(),
         ("sampling.synchronous", Some(false)) => "sampling and learning side by side".into(),
+        _ if name == "env.size" => show(value).replace(',', "x"),
         _ => show(value),
     }
 }
 
-/// A setting as users write it.
+/// A setting as a flag has it: a budget as `5` or `lava=3`, a lesson as `LEVEL:FRAMES`.
 fn show(value: Option<&Value>) -> String {
+    let joined =
+        |items: &[Value]| items.iter().map(|item| show(Some(item))).collect::<Vec<_>>().join(",");
     match value {
-        None => "none".into(),
+        None | Some(Value::Null) => "none".into(),
         // Most settings are single-precision; more digits would be noise.
         Some(Value::Number(number)) if number.is_f64() => {
             (number.as_f64().unwrap_or_default() as f32).to_string()
+        }
+        Some(Value::String(text)) => text.clone(),
+        Some(Value::Array(items)) => joined(items),
+        Some(item @ Value::Object(fields)) => {
+            let field = |name: &str| fields.get(name).map(|value| show(Some(value)));
+            match (field("term").as_deref(), field("budget"), field("level"), field("frames")) {
+                (Some("none"), Some(budget), ..) => budget,
+                (Some(term), Some(budget), ..) => format!("{term}={budget}"),
+                (_, _, Some(level), Some(frames)) => format!("{level}:{frames}"),
+                _ => item.to_string(),
+            }
         }
         Some(other) => other.to_string(),
     }
@@ -223,17 +237,25 @@ mod tests {
             ["learning.threads=6", "sampling.world_threads=6"]
         );
         for (wrong, named) in [
-            ("--algo PPOLag", "--algo: the run in run has \"PPOPID\", not \"PPOLag\""),
-            ("--preset paper", "--preset: the run in run has \"quick\", not \"paper\""),
-            ("--safety-budget 5", "--safety-budget: "),
+            ("--algo PPOLag", "--algo: the run in run has PPOPID, not PPOLag"),
+            ("--preset paper", "--preset: the run in run has quick, not paper"),
+            ("--safety-budget 5", "--safety-budget: the run in run has 7, not 5;"),
+            (
+                "--safety-budget harmful_items=5",
+                "--safety-budget: the run in run has 7, not harmful_items=5;",
+            ),
+            (
+                "--curriculum 2:64,3:64",
+                "--curriculum: the run in run has 1:4500,2:4500, not 2:64,3:64;",
+            ),
             (
                 "--async",
                 "--async: the run in run has sampling and learning in turn, not sampling and learning side by side",
             ),
             ("--frame-skip 8", "--frame-skip: the run in run has 4, not 8"),
-            ("--frame-skip 4 --size 64x48", "--size: the run in run has [128,72], not [64,48]"),
+            ("--frame-skip 4 --size 64x48", "--size: the run in run has 128x72, not 64x48"),
             ("--set learning.gamma=0.99", "--set learning.gamma: the run in run has 0.9, not 0.99"),
-            ("--iwad /some.wad", "--iwad: the run in run has none, not \"/some.wad\""),
+            ("--iwad /some.wad", "--iwad: the run in run has none, not /some.wad"),
         ] {
             let line = format!("hasard train RemedyRushLevel1-v0 --resume --out run {wrong}");
             match check(&line) {

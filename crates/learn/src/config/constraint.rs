@@ -136,7 +136,7 @@ pub(crate) fn find_terms(
                 terms.iter().position(|term| term.name == name).map(Some).ok_or_else(|| {
                     let names: Vec<&str> = terms.iter().map(|term| term.name).collect();
                     LearnError::Config(format!(
-                        "this environment has no cost term '{name}'; it has {}",
+                        "--safety-budget '{name}': the environment has no such cost term; it has {}",
                         names.join(", ")
                     ))
                 })

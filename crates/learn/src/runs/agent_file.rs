@@ -259,7 +259,7 @@ impl AgentFile {
     /// Reads an agent's file, `zoo:NAME` among them, with its bytes.
     ///
     /// # Errors
-    /// When it is no agent's file.
+    /// When it is not an agent's file.
     pub fn read_whole(path: &Path) -> Result<(Vec<u8>, AgentFile), LearnError> {
         if let Some(bytes) = zoo::bytes(path) {
             let file =
@@ -280,7 +280,9 @@ impl AgentFile {
         let file = AgentFile::parse(&bytes).map_err(|problem| {
             LearnError::content(
                 path,
-                format!("no agent's file ({problem}); give one that `hasard export-agent` wrote"),
+                format!(
+                    "not an agent's file ({problem}); give one that `hasard export-agent` wrote"
+                ),
             )
         })?;
         Ok((bytes, file))
@@ -288,13 +290,15 @@ impl AgentFile {
 
     /// Understands the bytes of an agent's file.
     pub fn parse(bytes: &[u8]) -> Result<AgentFile, String> {
-        let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|error| error.to_string())?;
+        let (_, metadata) =
+            SafeTensors::read_metadata(bytes).map_err(|_| "it has no safetensors header")?;
         let card = metadata
             .metadata()
             .as_ref()
             .and_then(|all| all.get(CARD))
-            .ok_or("it says nothing of its agent")?;
-        let card: Card = serde_json::from_str(card).map_err(|error| error.to_string())?;
+            .ok_or("its header describes no agent")?;
+        let card: Card =
+            serde_json::from_str(card).map_err(|error| format!("its card: {error}"))?;
         if card.format != FORMAT {
             return Err(format!("format {}, this program reads {FORMAT}", card.format));
         }

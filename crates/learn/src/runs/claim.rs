@@ -203,8 +203,9 @@ impl Claim {
             ));
         }
         let text = std::fs::read_to_string(path).map_err(LearnError::file(path, "read"))?;
-        let wrong = |error| {
-            LearnError::content(path, format!("is no claim: {error}; `hasard claim` writes one"))
+        let wrong = |error: serde_json::Error| {
+            let why = if error.is_data() { error.to_string() } else { "it is no JSON".into() };
+            LearnError::content(path, format!("is no claim: {why}; `hasard claim` writes one"))
         };
         let claim: Claim = serde_json::from_str(&text).map_err(wrong)?;
         if claim.format != FORMAT {

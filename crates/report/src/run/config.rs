@@ -2,7 +2,7 @@
 //!
 //! Long because it reads the settings of every version of the program.
 
-use super::own::OwnTask;
+use super::own::OwnTasks;
 use super::{Constraint, Warning};
 use crate::escape::one_line;
 use hasard_envs::{RuleSet, Scenario};
@@ -78,8 +78,8 @@ pub struct Config {
     pub env: String,
     /// The file of a task of one's own, where the run says.
     pub file: Option<String>,
-    /// The files of several tasks, by the names of their scenarios.
-    pub files: BTreeMap<String, String>,
+    /// The tasks of one's own among those that it was trained on.
+    pub own: OwnTasks,
     /// Name of the scenario, as in the id.
     pub scenario: String,
     /// Its level; the last one of a curriculum.
@@ -161,15 +161,12 @@ impl Config {
             })
         };
         let env = take("env")?;
-        let own_tasks = OwnTask::all(object.get("env").unwrap_or(&Value::Null));
-        let budget_of = |scenario: &str, released: bool| {
-            let rules = if released { RuleSet::Released } else { RuleSet::Paper };
-            let own = own_tasks.iter().find(|own| own.is(scenario));
-            own.map_or_else(|| default_budget(scenario, released), |own| own.budget(rules))
-        };
+        let own = OwnTasks::read(object.get("env").unwrap_or(&Value::Null));
         let usual_of_task = |one: &Constraint| {
             let task = one.term.as_deref().filter(|term| env.split(',').any(|id| id == *term));
-            task.is_some_and(|task| one.budget == budget_of(&scenario_and_level(task).0, false))
+            task.is_some_and(|task| {
+                one.budget == own.budget(&scenario_and_level(task).0, RuleSet::Paper)
+            })
         };
         let algo = take("algo")?;
         let seed = take("seed")?;
@@ -199,10 +196,9 @@ impl Config {
         }
         let file = options.get("env.scenario_file.path").cloned();
         options.retain(|key, _| !NOT_IDENTITY.iter().any(|beginning| below(key, beginning)));
-        let released =
-            options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
+        let rules = rule_set(options.get("rules"));
         let hard = options.get("hard").is_some_and(|hard| hard == "true");
-        let own_budget = if hard { 0.0 } else { budget_of(&scenario, released) };
+        let own_budget = if hard { 0.0 } else { own.budget(&scenario, rules) };
         let given = options.get("safety_budget").map(|text| text.parse::<f64>());
         let safety_budget = match given {
             None => own_budget,
@@ -216,18 +212,10 @@ impl Config {
         };
         // The budgets of the paper (50) and of the released code (5) for Armament Burden are both
         // "the scenario's own".
-        if safety_budget == own_budget || (!hard && safety_budget == budget_of(&scenario, false)) {
+        let of_paper = own.budget(&scenario, RuleSet::Paper);
+        if safety_budget == own_budget || (!hard && safety_budget == of_paper) {
             options.remove("safety_budget");
         }
-        let tables = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("tables"));
-        // Whatever else differs, a preset's own price of cost under the soft constraint counts.
-        let rules = if tables {
-            RuleSet::Tables
-        } else if released {
-            RuleSet::Released
-        } else {
-            RuleSet::Paper
-        };
         let known = Scenario::every().into_iter().find(|known| known.name == scenario);
         let own_scale = known.map_or(1.0, |known| known.penalty_scales[rules as usize][0]);
         let scale_applies = algo.eq_ignore_ascii_case("PPOCost");
@@ -285,7 +273,7 @@ impl Config {
         Ok(Config {
             env,
             file,
-            files: own_tasks.into_iter().map(OwnTask::named).collect(),
+            own,
             scenario,
             level,
             algo,
@@ -317,6 +305,16 @@ impl Config {
         self.options.get("rules").map(String::as_str)
     }
 
+    /// The budget that a scenario has in this run if nobody asks for another.
+    #[must_use]
+    pub fn usual_budget(&self, scenario: &str) -> f64 {
+        if self.hard() {
+            0.0
+        } else {
+            self.own.budget(scenario, rule_set(self.options.get("rules")))
+        }
+    }
+
     /// Whether it acts in the full action space.
     #[must_use]
     pub fn full_actions(&self) -> bool {
@@ -329,11 +327,16 @@ impl Config {
         self.options.get("frame_skip").and_then(|tics| tics.parse().ok()).unwrap_or(FRAME_SKIP)
     }
 
-    /// Whether harm ends the episode.
+    /// Whether the constraint is hard.
     #[must_use]
     pub fn hard(&self) -> bool {
         self.options.get("hard").is_some_and(|hard| hard == "true")
     }
+}
+
+/// The rule set of that name; the paper's where there is none, or one of another version.
+fn rule_set(name: Option<&String>) -> RuleSet {
+    name.and_then(|name| name.to_lowercase().parse().ok()).unwrap_or_default()
 }
 
 /// Settings that changed when the run was resumed, as the trainer lists them: those that
@@ -470,13 +473,4 @@ pub fn scenario_and_level(env: &str) -> (String, u32) {
         return (format!("{scenario}{}", &level[1..]), digit);
     }
     (name.to_owned(), 1)
-}
-
-/// The scenario's own budget: the paper's, or the released code's where it differs; 50 for a
-/// scenario that nobody registered.
-#[must_use]
-pub fn default_budget(scenario: &str, released: bool) -> f64 {
-    let rules = if released { RuleSet::Released } else { RuleSet::Paper };
-    let known = Scenario::every().into_iter().find(|known| known.name == scenario);
-    known.map_or(50.0, |known| known.safety_budget(rules))
 }

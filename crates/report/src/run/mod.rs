@@ -14,13 +14,14 @@ mod selected;
 mod task;
 
 pub use calibration::{Calibration, read_calibration};
-pub use config::{Config, FRAME_SKIP, SHOWN, default_budget, scenario_and_level};
+pub use config::{Config, FRAME_SKIP, SHOWN, scenario_and_level};
 pub use constraint::{Constraint, Kept};
 pub use discover::{Found, Origin, PlayerKey, discover};
 use episodes::own_episodes;
 pub use episodes::{EpisodeResult, read_episode_lines};
 pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
+pub use own::{OwnTasks, default_budget};
 pub use selected::{Evaluation, Selected, read_selected};
 
 use crate::curve::interpolate;

@@ -1,6 +1,6 @@
 //! A run on several tasks, task by task: a table of one environment has what the agent came to there.
 
-use super::config::{default_budget, scenario_and_level};
+use super::config::scenario_and_level;
 use super::{Constraint, Evaluation, Row, Run};
 
 /// The option that says which tasks a run was trained on together.
@@ -27,13 +27,12 @@ impl Run {
         let mut config = self.config.clone();
         (config.scenario, config.level) = scenario_and_level(task);
         config.env = task.to_owned();
-        config.file = config.files.get(&config.scenario).cloned();
+        config.file = config.own.file(&config.scenario).map(String::from);
         let names: Vec<&str> =
             self.config.env.split(',').map(|id| id.trim().trim_end_matches("-v0")).collect();
         config.options.insert(TOGETHER.into(), names.join(" + "));
         config.options.remove("constraints");
-        let released = config.rules().is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
-        let usual = if config.hard() { 0.0 } else { default_budget(&config.scenario, released) };
+        let usual = config.usual_budget(&config.scenario);
         let own = self.config.constraints.iter().find(|one| one.term.as_deref() == Some(task));
         let for_all = self.config.constraints.iter().find(|one| one.term.is_none());
         config.safety_budget = own.or(for_all).map_or(usual, |one| one.budget);

@@ -196,7 +196,20 @@ fn a_task_of_ones_own_has_its_files_budget() {
     ]);
     let config = parse(both, constraints);
     assert!(!config.options.contains_key("constraints"), "{:?}", config.options);
-    assert_eq!(config.files["ReportGarden"], "garden.toml");
+    assert_eq!(config.own.file("ReportGarden"), Some("garden.toml"));
+    let run = Run {
+        path: "x".into(),
+        config,
+        rows: vec![],
+        evaluation: vec![],
+        selected: None,
+        calibration: vec![],
+        heatmaps: vec![],
+    };
+    for task in run.by_task() {
+        let named = task.config.options.get("safety_budget");
+        assert_eq!(named, None, "{} has its own budget", task.config.env);
+    }
 }
 
 /// The end of a run is its last fiftieth of frames, however many reports the clock put there.

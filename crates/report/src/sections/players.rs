@@ -8,6 +8,7 @@ use crate::run::{
     Constraint, EpisodeResult, Found, Origin, PlayerKey, default_budget, scenario_and_level,
 };
 use crate::statistics::Estimate;
+use hasard_envs::RuleSet;
 
 /// Rollouts of policies and evaluations of trained agents.
 pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
@@ -86,8 +87,9 @@ fn played(found: &Found, counts: impl Fn(&PlayerKey) -> bool) -> Vec<(String, Ve
     {
         let (scenario, _) = scenario_and_level(env);
         let has = |wanted: &str| options.split(", ").any(|option| option == wanted);
-        let budget =
-            if has("hard true") { 0.0 } else { default_budget(&scenario, has("rules released")) };
+        let named = |rules: &RuleSet| has(&format!("rules {}", rules.name()));
+        let rules = RuleSet::ALL.into_iter().find(named).unwrap_or_default();
+        let budget = if has("hard true") { 0.0 } else { default_budget(&scenario, rules) };
         rows.push(row(player, env, options, &[Constraint { term: None, budget }], episodes));
     }
     rows
