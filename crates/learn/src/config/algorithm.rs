@@ -71,9 +71,10 @@ impl AlgorithmKind {
         if matches!(self, Self::Cup) { 2 } else { 1 }
     }
 
-    /// Whether policy and critics are networks of their own, as second-order steps want it.
+    /// Whether its steps are of the second order; its policy and critics are networks of their own
+    /// then.
     #[must_use]
-    pub const fn separates_networks(self) -> bool {
+    pub const fn is_second_order(self) -> bool {
         matches!(self, Self::Trpo | Self::TrpoLag | Self::TrpoPid | Self::Cpo)
     }
 }

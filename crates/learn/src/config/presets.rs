@@ -22,7 +22,7 @@ impl TrainConfig {
         let own_steps = env.own_episode_steps();
         let episode_steps = own_steps.unwrap_or(EPISODE_TICS / env.frame_skip.max(1)).max(1);
         let scenario = env.scenario();
-        let separate = algorithm.separates_networks();
+        let separate = algorithm.is_second_order();
         // As their papers have it: ten epochs of minibatches of 64 steps. The benchmark's own
         // algorithms pass once over all.
         let repeats =

@@ -52,7 +52,7 @@ pub(super) fn quicken(config: &mut TrainConfig) {
     config.learning.exploration_coefficient = 0.003;
     // A trust region is made for one step a rollout.
     let (passes, minibatches, rate) =
-        if config.algorithm.separates_networks() { (1, 1, 0.01) } else { (2, 4, 0.04) };
+        if config.algorithm.is_second_order() { (1, 1, 0.01) } else { (2, 4, 0.04) };
     (config.learning.epochs, config.learning.minibatches) = (passes, minibatches);
     // It would spare one step in eight.
     config.learning.reuse_forward = false;

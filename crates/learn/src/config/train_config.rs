@@ -134,7 +134,7 @@ impl TrainConfig {
             );
         }
         self.check_numbers()?;
-        if self.algorithm.separates_networks() && !self.network.separate {
+        if self.algorithm.is_second_order() && !self.network.separate {
             return refuse(
                 "separate networks",
                 &"off",
@@ -244,7 +244,7 @@ impl TrainConfig {
         if learning.value_phase == Some(0) {
             return refuse("learning.value_phase", 0.0, "a number of rollouts from 1, or null");
         }
-        if learning.value_phase.is_some() && self.algorithm.separates_networks() {
+        if learning.value_phase.is_some() && self.algorithm.is_second_order() {
             let allowed =
                 "null for algorithms of the second order, whose critics have critic_steps";
             return refuse(

@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 const SECONDS: f64 = 6.0;
 const MOST_KINDS: usize = 6;
 
+/// Steps of a rollout that is measured, if the run names no length to learn through.
+const SHORT: usize = 32;
+
 /// Tics of the longest episode.
 const EPISODE_TICS: u64 = 2100;
 
@@ -140,11 +143,25 @@ impl Plan {
 
 /// Frames a second of a run's loop, measured for some seconds, and the bytes of its checkpoints.
 fn tried(config: &TrainConfig, options: &EnvOptions, seconds: f64) -> Result<(f64, u64), Failure> {
+    let config = &of_short_updates(config);
     let make = |env: &EnvConfig, worlds| env.worlds(options, worlds);
     let kernels = Simd::chosen().map_err(Failure::bad)?;
     let loops = measure(kernels, config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
     let rate = loops.steps_per_second * f64::from(config.env.frame_skip);
     Ok((rate, loops.checkpoint_bytes * (config.reporting.keep as u64 + 1)))
+}
+
+/// The same training with shorter rollouts, and as much work for a frame, where an update would
+/// take a core half a minute: those of the second order learn from 16,000 samples at once.
+fn of_short_updates(config: &TrainConfig) -> TrainConfig {
+    let mut config = config.clone();
+    let (rollout, steps) = (config.sampling.rollout, config.learning.recurrence.unwrap_or(SHORT));
+    if config.algorithm.is_second_order() && steps < rollout {
+        config.sampling.rollout = steps;
+        let critic_steps = &mut config.algorithm_settings.critic_steps;
+        *critic_steps = (*critic_steps * steps / rollout).max(1);
+    }
+    config
 }
 
 /// How long a run takes here, evaluations included, and what it keeps on disk, in a line: measured
@@ -245,6 +262,25 @@ mod tests {
         let options = config.env.options().unwrap();
         let line = outlook(&config, &options).unwrap();
         assert!(line.starts_with("about ") && line.ends_with(" MB on disk"), "{line}");
+    }
+
+    /// As much is computed for a frame: only rollouts, and what is made of each, are shorter.
+    #[test]
+    fn long_updates_are_measured_by_short_ones() {
+        let make = |algorithm| {
+            let env = EnvConfig::new("RemedyRushLevel1-v0");
+            TrainConfig::new(algorithm, Preset::Quick, env).unwrap()
+        };
+        let steps_a_sample = |config: &TrainConfig| {
+            let samples = config.sampling.lanes * config.sampling.rollout;
+            config.algorithm_settings.critic_steps as f64 / samples as f64
+        };
+        let whole = make(AlgorithmKind::TrpoPid);
+        let short = of_short_updates(&whole);
+        assert!(short.sampling.lanes * short.sampling.rollout <= 2048);
+        assert_eq!(steps_a_sample(&short), steps_a_sample(&whole));
+        let ppo = make(AlgorithmKind::PpoPid);
+        assert_eq!(of_short_updates(&ppo), ppo);
     }
 
     #[test]
