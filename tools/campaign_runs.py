@@ -30,7 +30,10 @@ class Run:
         # PPOCost's alone; null is what the rules say, 1 under `paper`.
         scale = config.get("algorithm_settings", {}).get("penalty_scale")
         self.scale = 1.0 if scale is None else scale
-        self.earned, self.earned_half = last["episode_return"]["mean"], last["episode_return"]["half_width"]
+        earned = last["episode_return"]
+        self.earned, ends = earned["mean"], earned.get("bootstrap")
+        # As `hasard report` has it: of a bootstrap interval the longer arm.
+        self.earned_half = max(self.earned - ends[0], ends[1] - self.earned) if ends else earned["half_width"]
         cost = last["cost"]
         self.cost, self.cost_high = cost["mean"], float(row["judged_cost_high"])
         self.cost_low = cost["bootstrap"][0] if cost["bootstrap"] else cost["mean"] - cost["half_width"]

@@ -1,7 +1,7 @@
 //! `hasard train`: an agent from pixels.
 
 use super::sweep::plan;
-use super::train_settings::{check_length, configuration, with_rules};
+use super::train_settings::{check_length, configuration, unread, with_rules};
 use crate::args::TrainArgs;
 use crate::automap;
 use crate::episode_lines::worth;
@@ -70,6 +70,9 @@ pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
         let config = configuration(&with_rules(args, typed))?;
         check_length(args, &config)?;
         super::resume::check_said_once(args, typed)?;
+        if !args.quiet {
+            unread(args, config.algorithm).iter().for_each(|line| note!("{line}"));
+        }
         let start = match &args.init_from {
             Some(other) => Start::From(config.clone(), zoo::find(other.as_os_str())?),
             None => Start::Fresh(config.clone()),

@@ -7,6 +7,7 @@ use clap::parser::ValueSource;
 use hasard_learn::config::constraint::check_once_each;
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::numbers::check_number;
+use hasard_learn::config::readers::readers;
 use hasard_learn::config::{AlgorithmKind, Constraint, Preset, TrainConfig};
 
 /// The command with the rules that its preset belongs to, unless it names others: what made the
@@ -68,16 +69,38 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         config.constraints =
             args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
     }
+    let lessons = |text: &String, config: &TrainConfig| {
+        let levels = config.env.env_id().map_or(3, |id| id.scenario.levels.max(1));
+        parse_curriculum(text, config.frames, levels).map_err(Failure::bad)
+    };
+    // Lessons with lengths of their own say how long the run is, which other settings hang on.
+    if let Some(text) = &args.curriculum {
+        let lessons = lessons(text, &config)?;
+        config.set_frames(lessons.iter().fold(0, |sum, one| sum.saturating_add(one.frames)));
+    }
     let mut config =
         config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     if let Some(text) = &args.curriculum {
-        let levels = config.env.env_id().map_or(3, |id| id.scenario.levels.max(1));
-        let lessons = parse_curriculum(text, config.frames, levels).map_err(Failure::bad)?;
-        config.set_curriculum(lessons);
+        config.set_curriculum(lessons(text, &config)?);
     }
     config.check().map_err(Failure::bad)?;
     check_once_each(&config.constraints).map_err(Failure::bad)?;
     Ok(config)
+}
+
+/// A line for each `--set` of the algorithm's own settings that this algorithm does not read.
+pub fn unread(args: &TrainArgs, algorithm: AlgorithmKind) -> Vec<String> {
+    let line = |text: &String| {
+        let name = text.split('=').next()?;
+        let readers = readers(name).filter(|readers| !readers.contains(&algorithm))?;
+        let names: Vec<&str> = readers.into_iter().map(AlgorithmKind::name).collect();
+        Some(format!(
+            "hasard: --set {text} changes nothing: {} does not read it, but {}",
+            algorithm.name(),
+            names.join(", ")
+        ))
+    };
+    args.set.iter().filter_map(line).collect()
 }
 
 /// Refuses a fresh run whose curriculum has another length than `--frames` asks for: it would train
@@ -224,6 +247,35 @@ pub(super) mod tests {
             let message = format!("{:?}", config(line).unwrap_err());
             assert!(message.contains(cost), "{message}");
         }
+    }
+
+    /// The schedule of the multiplier hangs on the length, however that is given.
+    #[test]
+    fn lessons_with_lengths_make_the_run_that_shares_of_its_length_make() {
+        let (lengths, shares) = (
+            config("--curriculum 1:700000,2:700000,3:600000").unwrap(),
+            config("--curriculum 1,2,3 --frames 2M").unwrap(),
+        );
+        assert_eq!(lengths.frames, 2_000_000);
+        assert_eq!(lengths.algorithm_settings, shares.algorithm_settings);
+        let typed = "--curriculum 1:5,2:5 --set algorithm_settings.pid_reference_budget=7";
+        let settings = config(typed).unwrap().algorithm_settings;
+        assert_eq!(settings.pid_reference_budget, Some(7.0));
+    }
+
+    #[test]
+    fn settings_that_an_algorithm_does_not_read_are_named() {
+        let (args, _) = train(
+            "hasard train RemedyRushLevel1-v0 --set algorithm_settings.multiplier_rate=5 --set learning.gamma=0.9 \
+             --set algorithm_settings.pid_delay=3",
+        );
+        let lines = unread(&args, AlgorithmKind::PpoPid);
+        assert!(
+            lines.len() == 1 && lines[0].contains("multiplier_rate=5 changes nothing"),
+            "{lines:?}"
+        );
+        assert!(lines[0].ends_with("but PPOLag, TRPOLag, FOCOPS, CUP"), "{lines:?}");
+        assert_eq!(unread(&args, AlgorithmKind::PpoLag).len(), 1);
     }
 
     #[test]

@@ -100,9 +100,12 @@ impl Plane {
         let value_active = |lambda: f64| -0.5 * (a / lambda.max(1e-12) + lambda * room) - r * c / s;
         let value_free = |lambda: f64| -0.5 * (q / lambda.max(1e-12) + 2.0 * lambda * radius);
         let (on, off) = (project(bounded, true), project(unbounded, false));
-        // With c = 0 the sign of r alone says which stretch there is.
+        // With c = 0 the sign of r alone says which stretch there is; within the budget and with a
+        // move that lowers the cost there is none where it binds.
         let lambda = if c.abs() <= 1e-12 {
             if r < 0.0 { bounded } else { unbounded }
+        } else if c < 0.0 && r >= 0.0 {
+            off
         } else if value_active(on) >= value_free(off) {
             on
         } else {
@@ -247,18 +250,22 @@ mod tests {
                 };
                 watch.add(&episode, &config.constraints).unwrap();
             }
-            let excess = surrogate_excess(&watch.signals(&config, 0.0, &[p])[0]);
+            let alone = watch.signals(&config, 0.0, &[p])[0];
             // The mean over steps of ratio * advantage moves by p(1 - p) a unit of the logit, and
-            // so does p.
+            // so does p; in half of the worlds, where the others have another task, by half of it.
             let slope = p * (1.0 - p);
-            let weights = Plane { q: slope, r: -slope, s: slope, excess, radius: 0.05 }.solve();
-            let moved = p + (weights.reward - weights.cost) * slope;
-            assert!(!weights.recovery);
-            let after = mean_length * moved;
-            assert!(
-                (after - 50.0).abs() < 1e-6,
-                "episodes of {lengths:?} steps: from {cost} to {after}, budget 50"
-            );
+            for share in [1.0, 0.5] {
+                let excess = surrogate_excess(&Signal { share, ..alone });
+                let (r, s) = (-slope * share, slope * share * share);
+                let weights = Plane { q: slope, r, s, excess, radius: 0.05 }.solve();
+                let moved = p + (weights.reward - weights.cost * share) * slope;
+                assert!(!weights.recovery);
+                let after = mean_length * moved;
+                assert!(
+                    (after - 50.0).abs() < 1e-6,
+                    "episodes of {lengths:?} steps: from {cost} to {after}, budget 50"
+                );
+            }
         }
     }
 

@@ -44,7 +44,7 @@ impl Cup {
     ) -> Loss {
         let (gamma, lambda) =
             (self.settings.cost_gamma.unwrap_or(self.settings.gamma), self.settings.gae_lambda);
-        let coefficient = (1.0 - gamma * lambda) / (1.0 - gamma).max(1e-6);
+        let coefficient = (1.0 - gamma * lambda) / (1.0 - gamma);
         let mut total = heads.mean_of(&heads.policy.divergence(halfway));
         for (cost, multiplier) in batch.costs().iter().zip(self.multipliers()) {
             let advantages = centred(&cost.advantages);

@@ -11,6 +11,8 @@ pub struct Signal {
     pub episode_steps: f64,
     /// Mean steps of the episodes that the cost is the mean of.
     pub mean_steps: f64,
+    /// Share of the worlds that have the constraint: 1, but for those of one of several tasks.
+    pub share: f64,
     /// Cost of the episodes alone that finished since multipliers last moved.
     pub fresh_cost: f64,
     /// Rollouts that those episodes stand for; 0 if there are none.
@@ -48,17 +50,19 @@ impl Signal {
             episode_budget,
             episode_steps,
             mean_steps,
+            share: 1.0,
             fresh_cost,
             fresh_weight: 1.0,
             done: 0.0,
         }
     }
 
-    /// Cost above budget in the unit of a surrogate of the cost, which is a mean over steps: an
-    /// episode's cost changes by that mean's change times the steps that episodes have at present.
+    /// Cost above budget in the unit of a surrogate of the cost, which is a mean over the steps of
+    /// all worlds: an episode's cost changes by the change of the mean over its own task's steps,
+    /// times the steps that episodes have at present.
     #[must_use]
     pub fn surrogate_excess(&self) -> f64 {
-        self.episode_excess() / self.mean_steps
+        self.episode_excess() * self.share / self.mean_steps
     }
 
     /// Cost above budget of an episode.

@@ -22,6 +22,7 @@ pub mod place;
 mod presets;
 mod quick;
 mod ranges;
+pub mod readers;
 mod reporting;
 mod sampling;
 mod second_order;

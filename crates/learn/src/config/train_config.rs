@@ -53,7 +53,8 @@ pub struct TrainConfig {
     pub curriculum: Vec<Lesson>,
     /// `cpu`, or a graphics device that this program was built for.
     pub device: String,
-    /// Steps of the longest episode.
+    /// Steps of the longest episode, by which multipliers measure costs and over which
+    /// `sampling.spread_out` spreads the worlds; those keep their own length.
     pub episode_steps: u32,
     /// Constraints, each with its budget.
     pub constraints: Vec<Constraint>,
@@ -148,6 +149,12 @@ impl TrainConfig {
                 &"above 0 where policy and critics are networks of their own",
                 "0",
             );
+        }
+        if self.algorithm == AlgorithmKind::Cup
+            && learning.cost_gamma.unwrap_or(learning.gamma) >= 1.0
+        {
+            let allowed = "below 1 for CUP, whose projection has 1 / (1 - gamma) for a horizon";
+            return refuse("the discount of costs", &1, allowed);
         }
         if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
             return refuse(

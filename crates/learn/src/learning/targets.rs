@@ -19,6 +19,8 @@ pub struct Prepared<'a> {
     pub old_values: Vec<Vec<f32>>,
     /// Mean cost of each constraint per step.
     pub mean_costs: Vec<f64>,
+    /// What the values of each critic were normalised by when the actions were taken.
+    pub acted_by: Vec<Moments>,
 }
 
 impl Prepared<'_> {
@@ -94,6 +96,7 @@ pub(crate) fn prepare<'a>(
         targets: Vec::new(),
         old_values: Vec::new(),
         mean_costs: vec![0.0; constraints],
+        acted_by: Vec::new(),
     };
     let popart = settings.normaliser == ReturnNormaliser::PopArt;
     let shared = settings.cost_uses_reward_normaliser;
@@ -104,7 +107,10 @@ pub(crate) fn prepare<'a>(
             let (part, own) = rollout.find(lane);
             part.outputs[(step * part.lanes + own) * width + first + critic]
         };
-        let (advantages, returns) = estimates(rollout, shape, config, critic, moments, value);
+        let acted_by = *moments;
+        let by = (&acted_by, &acted_by);
+        let (advantages, returns) = estimates(rollout, shape, config, critic, by, value);
+        prepared.acted_by.push(acted_by);
         let mut old_values: Vec<f32> =
             (0..lanes).flat_map(|lane| (0..steps).map(move |step| value(lane, step))).collect();
         if popart {
@@ -141,12 +147,19 @@ pub(crate) fn prepare_anew<'a>(
     for critic in 0..moments_of.len() {
         let moments = &moments_of[if shared { 0 } else { critic }];
         let value = |lane: usize, step: usize| value(critic, lane, step);
-        let (own, returns) = estimates(prepared.rollout, shape, config, critic, moments, value);
+        let by = (moments, &prepared.acted_by[critic]);
+        let (own, returns) = estimates(prepared.rollout, shape, config, critic, by, value);
         targets.push(normalised(&returns, moments, config));
         advantages.push(own);
     }
-    let (old_values, mean_costs) = (prepared.old_values.clone(), prepared.mean_costs.clone());
-    Prepared { rollout: prepared.rollout, advantages, targets, old_values, mean_costs }
+    Prepared {
+        rollout: prepared.rollout,
+        advantages,
+        targets,
+        old_values: prepared.old_values.clone(),
+        mean_costs: prepared.mean_costs.clone(),
+        acted_by: prepared.acted_by.clone(),
+    }
 }
 
 /// Returns as a critic is to predict them.
@@ -162,19 +175,20 @@ fn normalised(returns: &[f32], moments: &Moments, config: &TrainConfig) -> Vec<f
 }
 
 /// Advantages and returns of a critic, in raw units, from its normalised value of each lane and
-/// step.
+/// step. `moments` are what these are normalised by, and what those after a time-out are, which the
+/// actors gave.
 fn estimates(
     rollout: &Rollout,
     shape: &ModelShape,
     config: &TrainConfig,
     critic: usize,
-    moments: &Moments,
+    (moments, acted_by): (&Moments, &Moments),
     value: impl Fn(usize, usize) -> f32,
 ) -> (Vec<f32>, Vec<f32>) {
     let (steps, lanes) = (rollout.steps(), rollout.lanes());
     let (constraints, settings) = (config.constraints.len(), &config.learning);
     let column = shape.value_column() + critic;
-    let raw = |value: f32| match settings.normaliser {
+    let raw = |value: f32, moments: &Moments| match settings.normaliser {
         _ if settings.cost_uses_reward_normaliser && critic > 0 => value.clamp(-CLIP, CLIP),
         ReturnNormaliser::PopArt => moments.scale_up(value),
         ReturnNormaliser::Running => moments.denormalise(value),
@@ -186,7 +200,7 @@ fn estimates(
     for lane in 0..lanes {
         let (part, own) = rollout.find(lane);
         let row = |step: usize| step * part.lanes + own;
-        let values: Vec<f32> = (0..=steps).map(|step| raw(value(lane, step))).collect();
+        let values: Vec<f32> = (0..=steps).map(|step| raw(value(lane, step), moments)).collect();
         let rewards: Vec<f32> = (0..steps)
             .map(|step| match critic {
                 0 => part.rewards[row(step)],
@@ -197,7 +211,7 @@ fn estimates(
         let mut cut_off_values = vec![0.0; steps];
         if settings.bootstraps(critic > 0) {
             for (cut, outputs) in part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own) {
-                cut_off_values[cut / part.lanes] = raw(outputs[column]);
+                cut_off_values[cut / part.lanes] = raw(outputs[column], acted_by);
             }
         }
         let out = &mut advantages[lane * steps..(lane + 1) * steps];

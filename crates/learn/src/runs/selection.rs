@@ -243,7 +243,7 @@ pub fn select(
                 let is_last = best.frames == frames;
                 let set = EpisodeSet::Closing(if is_last { 0 } else { attempts + 1 });
                 let Some((_, closing)) = go(Some(best.frames), set)? else { return Ok(None) };
-                last_closing = is_last.then(|| closing.clone());
+                last_closing = is_last.then(|| closing.clone()).or(last_closing);
                 best.closing = Some(closing);
             }
             best

@@ -202,6 +202,16 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
             // the run; only evaluations may still come.
             let learns = loaded.is_none() || at < config.frames;
             let changed = config != before && (learns || config.evaluation != before.evaluation);
+            let closed =
+                |known: &Selection| known.last.as_ref().is_some_and(|last| last.frames == at);
+            if changed && !learns && read_selection(run.path()).is_some_and(|known| closed(&known))
+            {
+                return Err(LearnError::content(
+                    directory,
+                    "the run is over, and its checkpoint was selected by the evaluations that it had; `hasard eval` plays more episodes, \
+                     and --frames trains on",
+                ));
+            }
             let beginning =
                 loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)));
             Ok(Begun { run, config, beginning, fresh: false, changed })

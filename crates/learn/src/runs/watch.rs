@@ -213,15 +213,20 @@ impl Watch {
     #[must_use]
     pub fn signals(&self, config: &TrainConfig, done: f64, minibatch_costs: &[f64]) -> Vec<Signal> {
         let episode_steps = f64::from(config.episode_steps);
+        let share = |index: usize| {
+            self.constraint_windows[index].max(1) as f64 / config.sampling.lanes.max(1) as f64
+        };
         let signal = |index: usize, episode_cost: f64| Signal {
             done,
+            share: share(index),
             ..Signal::steady(episode_cost, self.aim(config, index, done), episode_steps)
         };
         if config.constraint_statistic == ConstraintStatistic::StepMean {
             return minibatch_costs
                 .iter()
                 .enumerate()
-                .map(|(index, cost)| signal(index, cost * episode_steps))
+                // The mean is over all worlds, also those that do not have the constraint.
+                .map(|(index, cost)| signal(index, cost * episode_steps / share(index)))
                 .collect();
         }
         let once = config.algorithm_settings.multiplier_update == MultiplierUpdate::Rollout;

@@ -217,7 +217,8 @@ impl Config {
             options.remove("safety_budget");
         }
         let known = Scenario::every().into_iter().find(|known| known.name == scenario);
-        let own_scale = known.map_or(1.0, |known| known.penalty_scales[rules as usize][0]);
+        let own_scale =
+            known.map_or(1.0, |known| known.penalty_scales[rules as usize][usize::from(hard)]);
         let scale_applies = algo.eq_ignore_ascii_case("PPOCost");
         let cost_scale = match options
             .get("cost_scale")

@@ -127,7 +127,8 @@ impl Run {
         } else {
             Vec::new()
         };
-        let selected = read_selected(path, warnings);
+        let frames = rows.last().map_or(0.0, |row: &Row| row.frames);
+        let selected = read_selected(path, frames, warnings);
         Ok(Run {
             path: path.to_owned(),
             config,

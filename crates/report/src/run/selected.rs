@@ -17,6 +17,8 @@ pub struct Selected {
     pub closing: Option<Evaluation>,
     /// The same of the run's last policy.
     pub last: Option<Evaluation>,
+    /// Frames after which the run was closed, if the file says.
+    pub closed_at: Option<f64>,
 }
 
 /// What some episodes of one policy came to.
@@ -44,12 +46,19 @@ impl Evaluation {
     }
 }
 
-/// Reads the file of a run directory, if there is one; of a damaged one `warnings` says so.
-pub fn read_selected(run: &Path, warnings: &mut Vec<Warning>) -> Option<Selected> {
+/// Reads the file of a run directory, if there is one; of a damaged one `warnings` says so, and of
+/// one that was written before the run went on to `frames`: it is of another policy.
+pub fn read_selected(run: &Path, frames: f64, warnings: &mut Vec<Warning>) -> Option<Selected> {
     let path = FILES.iter().map(|name| run.join(name)).find(|path| path.is_file())?;
     let problem = match super::read_text(&path) {
         Ok(text) => match understand(&text) {
-            Some(selected) => return Some(selected),
+            Some(selected) => match selected.closed_at.filter(|&closed| closed < frames) {
+                None => return Some(selected),
+                Some(closed) => format!(
+                    "is of {closed} frames, and the run went on to {frames}; passed over until the run is over \
+                     (`hasard train ... --resume`)"
+                ),
+            },
             None => "does not say which checkpoint was selected; passed over".to_owned(),
         },
         Err(warning) => warning.problem,
@@ -65,6 +74,7 @@ fn understand(text: &str) -> Option<Selected> {
         frames: value.get("frames")?.as_f64()?,
         closing: evaluation(&["closing"]),
         last: evaluation(&["last"]),
+        closed_at: value.get("last").and_then(|last| last.get("frames")?.as_f64()),
     })
 }
 
@@ -120,6 +130,7 @@ mod tests {
         let closing = selected.closing.unwrap();
         let last = selected.last.unwrap();
         assert_eq!((selected.frames, closing.episodes, last.episodes), (500.0, 100, 50));
+        assert_eq!(selected.closed_at, Some(600.0));
         assert_eq!(
             (closing.get("cost_mean").unwrap().high(), last.get("cost_mean").unwrap().high()),
             (47.5, 50.0)

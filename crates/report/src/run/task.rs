@@ -164,7 +164,12 @@ mod tests {
                 episode("RemedyRushLevel1-v0", 4.0),
                 episode("VolcanicVentureLevel1-v0", 60.0),
             ],
-            selected: Some(Selected { frames: 100.0, closing: Some(closing), last: None }),
+            selected: Some(Selected {
+                frames: 100.0,
+                closing: Some(closing),
+                last: None,
+                closed_at: None,
+            }),
             calibration: vec![],
             heatmaps: vec![],
         }

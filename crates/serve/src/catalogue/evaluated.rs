@@ -28,7 +28,8 @@ impl Stamped {
             return false;
         }
         self.stamp = stamp;
-        self.found = read_selected(run, &mut Vec::new());
+        // Of a run that goes on, what it selected before is what there is.
+        self.found = read_selected(run, 0.0, &mut Vec::new());
         true
     }
 }

@@ -144,6 +144,20 @@ fn each_task_is_held_against_its_own_budget() {
     // Two worlds play the first, one the second: so many of the latest count. All four are new.
     assert_eq!(costs(&watch), [(6.0, 6.0, 1.0, 525.0), (70.0, 80.0, 1.0, 300.0)]);
     assert_eq!(signals(&watch)[1].episode_budget, 50.0);
+    // The surrogate of the second's cost is a mean over all three worlds' steps.
+    let excess: Vec<f64> = signals(&watch).iter().map(Signal::surrogate_excess).collect();
+    let expected = [(6.0 - 5.0) / 525.0 * 2.0 / 3.0, (70.0 - 50.0) / 300.0 / 3.0];
+    assert!(excess.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{excess:?}");
+    // And so is the mean cost of a step, from which 525 steps of the second cost 3 * 0.02 * 525.
+    let by_step =
+        TrainConfig { constraint_statistic: ConstraintStatistic::StepMean, ..config.clone() };
+    let costs_by_step = watch.signals(&by_step, 0.0, &[0.01, 0.02]);
+    let costs_by_step: Vec<f64> = costs_by_step.iter().map(|one| one.episode_cost).collect();
+    let expected = [0.01 * 1.5 * 525.0, 0.02 * 3.0 * 525.0];
+    assert!(
+        costs_by_step.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9),
+        "{costs_by_step:?}"
+    );
     // 3 over the budget of 5; 40 and 20 over that of 50.
     assert_eq!(watch.totals.as_ref().unwrap().violations, [3.0, 60.0]);
     watch.learned();
