@@ -56,7 +56,8 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
     Attributes:
         observation_space: `Box(0, 255, (height, width, channels * frame_stack), uint8)`, or channels first with `layout="chw"`.
         action_space: as action_format says. extent: x from, y from, x to, y to of the map, map units.
-        safety_budget: cost that an episode may have. cost_terms: a `CostTerm` each. max_episode_steps: steps of an episode that only time ends.
+        safety_budget: cost that an episode may have, 0 under the hard constraint. cost_terms: a `CostTerm` each. max_episode_steps: steps of
+            an episode that only time ends.
         scenario_name, level, hard_constraint, frame_skip: as it was made. spec: Gymnasium's, which makes it again, through JSON too.
     """
 

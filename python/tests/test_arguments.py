@@ -291,3 +291,10 @@ def test_one_part_may_come_in_a_column() -> None:
         assert_same(envs.step(actions), others.step(flat))
         with pytest.raises(ValueError, match="shape"):
             envs.step(np.zeros((2, 2), int) if action_format == "discrete" else (np.zeros((2, 2), int),) * 2)
+
+
+def test_the_hard_constraint_has_a_budget_of_0() -> None:
+    for given, budget in (({}, 5.0), ({"hard_constraint": True}, 0.0), ({"hard_constraint": True, "safety_budget": 3}, 3.0)):
+        env = hasard_rs.make("RemedyRushLevel1-v0", **given)
+        assert env.get_wrapper_attr("safety_budget") == budget
+        env.close()

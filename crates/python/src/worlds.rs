@@ -309,7 +309,7 @@ impl Worlds {
         };
         let made = py.detach(|| Inner::new(&ids, &given.options, options));
         let mut inner = made.map_err(|error| raise(py, &error))?;
-        let rules = given.options.rules;
+        let (rules, hard) = (given.options.rules, given.options.hard);
         let worlds = inner.worlds();
         let masks: Vec<Vec<bool>> = worlds.tasks().into_iter().map(|task| task.mask).collect();
         let choices = worlds.action_space().sizes().iter().sum();
@@ -319,7 +319,7 @@ impl Worlds {
                 inner.look(index, |env: &mut Env| (env.episode_steps(), env.extent()));
             let mask = masks.get(index).cloned().unwrap_or_else(|| vec![true; choices]);
             let safety_budget =
-                given.safety_budget.unwrap_or_else(|| id.scenario.safety_budget(rules));
+                given.safety_budget.unwrap_or_else(|| id.safety_budget(rules, hard));
             Task { id, safety_budget, episode_steps, extent, mask }
         });
         let tasks: Vec<Task> = tasks.collect();

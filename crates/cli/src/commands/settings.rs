@@ -2,17 +2,22 @@
 
 use crate::args::SettingsArgs;
 use crate::failure::{Failure, Outcome};
+use hasard_envs::RuleSet;
 use hasard_learn::config::explained::settings;
 use hasard_learn::config::settings::setting_pointer;
-use hasard_learn::config::{EnvConfig, TrainConfig};
+use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
 use serde_json::json;
 
 /// Runs the command.
 pub fn run(args: &SettingsArgs) -> Outcome {
     let (algorithm, preset) =
         (args.algo.parse().map_err(Failure::bad)?, args.preset.parse().map_err(Failure::bad)?);
-    let config =
-        TrainConfig::new(algorithm, preset, EnvConfig::new(&args.env)).map_err(Failure::bad)?;
+    let mut env = EnvConfig::new(&args.env);
+    // As `hasard train` has it.
+    if preset == Preset::Tables {
+        env.rules = RuleSet::Tables.name().into();
+    }
+    let config = TrainConfig::new(algorithm, preset, env).map_err(Failure::bad)?;
     let written = serde_json::to_value(config).map_err(Failure::bad)?;
     for one in settings() {
         // Groups are listed by their parts; what a run seldom has is not written.
