@@ -87,6 +87,11 @@ def make_vec(env_id: str | Sequence[str], num_envs: int = 1, **kwargs: Any) -> V
         tasks = [_task(one) for one in env_id]
         if not tasks:
             raise InvalidOption("a batch needs a task; the list of ids is empty")
+        texts: dict[str, str] = {}
+        for task in tasks:
+            text = task.get("scenario_file", ["", ""])[1]
+            if texts.setdefault(task["scenario"], text) != text:
+                raise InvalidOption(f"two tasks of the batch are called {task['scenario']}; give one of them another name")
         return VectorEnv(tasks=tasks, num_envs=num_envs, **kwargs)
     known = _known(cast("str", env_id))
     made = _gymnasium.make_vec(f"hasard/{known}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)

@@ -17,6 +17,7 @@ import numpy as np
 from hasard_rs import _core
 from hasard_rs.arguments import check_seed, is_number, over, plain
 from hasard_rs.errors import HasardError, InvalidOption
+from hasard_rs.own import from_text
 from hasard_rs.progress import Bar
 from hasard_rs.registry import bare
 
@@ -80,6 +81,8 @@ def train(
     Raises:
         InvalidOption for wrong settings, before anything is written.
     """
+    if callback is not None and not callable(callback):
+        raise InvalidOption(f"callback cannot be {callback!r:.60}; it must be a function of a report, or None")
     words = training_words(env_id, algorithm, preset=preset, out=out, set=set, **flags)
     frames = flags.get("frames")
     with Bar(int(frames) if isinstance(frames, (int, float)) else None) as bar:
@@ -202,7 +205,10 @@ class Agent:
         either name) come before its own."""
         import hasard_rs
 
-        return hasard_rs.make(self.env_id, **over({**self.arguments(), **self._format()}, arguments))
+        tasks = self._tasks()
+        if len(tasks) > 1:
+            raise InvalidOption(f"{self.run}: the agent is of several tasks; make_vec makes a batch of them")
+        return hasard_rs.make(tasks[0], **over({**self.arguments(), **self._format()}, arguments))
 
     def make_vec(self, num_envs: int = 1, **arguments: Any) -> Any:
         """A vector environment like the one that the agent was trained in, in SAME_STEP mode.
@@ -217,7 +223,16 @@ class Agent:
         import hasard_rs
 
         usual = {"autoreset_mode": "SameStep", **self.arguments(), **self._format()}
-        return hasard_rs.make_vec(self.env_id, num_envs, **over(usual, arguments))
+        tasks = self._tasks()
+        return hasard_rs.make_vec(tasks if len(tasks) > 1 else tasks[0], num_envs, **over(usual, arguments))
+
+    def _tasks(self) -> list[str]:
+        """The ids that it was trained on; tasks of one's own are known from now on, by the text that the run kept."""
+        env = self.config["env"]
+        for file in [env.get("scenario_file"), *env.get("scenario_files", [])]:
+            if file:
+                from_text(file["text"], file["path"])
+        return [f"hasard/{task.strip()}" for task in env["id"].split(",")]
 
     def _format(self) -> dict[str, Any]:
         return {"action_format": "dict"} if self.config["env"]["full_actions"] else {}

@@ -121,7 +121,12 @@ def _env_id(task: dict[str, Any]) -> str:
         raise TypeError(f"missing keyword argument {missing}; hasard_rs.make takes an id, which has both") from None
     scenario = getattr(scenario, "value", scenario)
     file = task.get("scenario_file")
-    return f"{scenario}Level{level}-v0" if file is None else _core.register_scenario(*file)[level - 1]
+    if file is None:
+        return f"{scenario}Level{level}-v0"
+    ids = _core.register_scenario(*file)
+    if isinstance(level, bool) or not isinstance(level, int) or not 1 <= level <= len(ids):
+        raise InvalidOption(f"level cannot be {level!r}; the levels of {scenario} are 1 to {len(ids)}")
+    return ids[level - 1]
 
 
 def _check(arguments: Arguments) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hasard_rs import _core
+from hasard_rs.arguments import plain
 from hasard_rs.errors import InvalidOption
 
 
@@ -27,13 +28,20 @@ class OwnScenario:
         """Returns its environment of a `level` in a `CostWrapper`; `arguments` as of `hasard_rs.make`."""
         import hasard_rs
 
-        return hasard_rs.make(self.ids[level - 1], **arguments)
+        return hasard_rs.make(self._id(level), **arguments)
 
     def make_vec(self, num_envs: int = 1, level: int = 1, **arguments: Any) -> Any:
         """Returns a `VectorEnv` of `num_envs` lanes of a `level`; `arguments` as of `hasard_rs.make_vec`."""
         import hasard_rs
 
-        return hasard_rs.make_vec(self.ids[level - 1], num_envs, **arguments)
+        return hasard_rs.make_vec(self._id(level), num_envs, **arguments)
+
+    def _id(self, level: int) -> str:
+        """The id of a level, which is this scenario's again if another of its name was made since, or in another process."""
+        known = from_text(self.text, self.path).ids
+        if isinstance(level, bool) or not isinstance(level, int) or not 1 <= level <= len(known):
+            raise InvalidOption(f"level cannot be {level!r}; the levels of {self.path} are 1 to {len(known)}")
+        return known[level - 1]
 
 
 def is_file(env_id: Any) -> bool:
@@ -115,6 +123,7 @@ def _key(name: Any) -> str:
 
 def _value(value: Any) -> str:
     """The TOML of a value."""
+    value = plain(value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -81,3 +81,25 @@ def test_the_last_of_a_name_counts() -> None:
     own = hasard_rs.Scenario.from_dict(changed)
     assert hasard_rs.make(own.ids[0]).unwrapped.max_episode_steps == 9
     assert hasard_rs.Scenario.from_dict(GARDEN).make().unwrapped.max_episode_steps == 88
+
+
+def test_each_scenario_plays_its_own_rules_whatever_was_made_since() -> None:
+    def of(reward: float) -> Any:
+        return hasard_rs.Scenario.from_dict({**GARDEN, "when": [{"event": "step", "reward": reward}]})
+
+    first, second = of(100.0), of(7.0)
+    for own, reward in ((first, 100.0), (second, 7.0), (pickle.loads(pickle.dumps(first)), 100.0)):
+        env = own.make(resolution="64x48")
+        env.reset(seed=1)
+        assert env.step(np.array([0, 0]))[1] == reward
+        env.close()
+    for level in (0, -1, 3, "1", True):
+        with pytest.raises(hasard_rs.InvalidOption, match="1 to 2"):
+            first.make(level=level)
+
+
+def test_a_batch_of_two_tasks_of_one_name_is_refused(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.toml").write_text(f'{hasard_rs.Scenario.from_dict(GARDEN).text}# {name}\n')
+    with pytest.raises(hasard_rs.InvalidOption, match="called PyGarden"):
+        hasard_rs.make_vec([str(tmp_path / "a.toml"), str(tmp_path / "b.toml")], 2)

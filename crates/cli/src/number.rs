@@ -54,9 +54,21 @@ pub fn positive(text: &str) -> Result<u64, String> {
 /// What is wrong with a scenario's file.
 pub fn env_id(text: &str) -> Result<String, String> {
     if text.contains(',') && !std::path::Path::new(text).exists() {
-        let ids: Result<Vec<String>, String> =
-            text.split(',').map(|id| env_id(id.trim())).collect();
-        return Ok(ids?.join(","));
+        let words: Vec<&str> = text.split(',').map(str::trim).collect();
+        let ids = words.iter().map(|id| env_id(id)).collect::<Result<Vec<String>, String>>()?;
+        let same_name = |(first, second): (usize, usize)| {
+            let (one, other) = (words[first], words[second]);
+            let files = hasard_envs::own::is_file(one) && hasard_envs::own::is_file(other);
+            ids[first] == ids[second] && files && !same_text(one, other)
+        };
+        let pairs = (0..ids.len()).flat_map(|second| (0..second).map(move |first| (first, second)));
+        if let Some((first, second)) = pairs.into_iter().find(|pair| same_name(*pair)) {
+            return Err(format!(
+                "{} and {} are both {}; give one of them another `name`",
+                words[first], words[second], ids[first]
+            ));
+        }
+        return Ok(ids.join(","));
     }
     if hasard_envs::own::is_file(text) {
         return hasard_envs::own::open(text)
@@ -70,6 +82,12 @@ pub fn env_id(text: &str) -> Result<String, String> {
         .map(|id| id.to_string())
         .find(|id| id.trim_end_matches("-v0").eq_ignore_ascii_case(plain));
     Ok(known.unwrap_or_else(|| text.to_string()))
+}
+
+/// Whether two scenarios' files say the same.
+fn same_text(one: &str, other: &str) -> bool {
+    let read = |word: &str| std::fs::read(word.split('#').next().unwrap_or(word)).ok();
+    read(one) == read(other)
 }
 
 #[cfg(test)]

@@ -102,6 +102,23 @@ fn bad_files_are_refused_in_a_line_and_checked_in_full() {
     assert!(folder.refused("record . -o x.gif").len() < 300);
 }
 
+/// One network acts in all lessons, and one name is one task: both are refused before anything is
+/// written.
+#[test]
+fn tasks_that_cannot_be_trained_together_are_refused_before_the_first_frame() {
+    let folder = Folder::new("apart");
+    folder.ok("new garden");
+    let text = String::from_utf8(folder.read("garden.toml")).unwrap();
+    let more = "\n[levels.2]\nscenario.actions = [[\"TURN_LEFT\", \"TURN_RIGHT\"], [\"MOVE_FORWARD\"], [\"JUMP\"], [\"USE\"]]\n";
+    std::fs::write(folder.0.join("levels.toml"), text.clone() + more).unwrap();
+    let line = folder.refused("train levels.toml --curriculum 1:64,2:64 --out run");
+    assert!(line.contains("level 2 has other buttons than level 1"), "{line}");
+    std::fs::write(folder.0.join("other.toml"), text + "\n# another file\n").unwrap();
+    let line = folder.refused("train garden.toml,other.toml --frames 64 --out run");
+    assert!(line.contains("garden.toml and other.toml are both"), "{line}");
+    assert!(!folder.0.join("run").exists());
+}
+
 /// Several tasks make one batch for `bench`; what plays one environment says so.
 #[test]
 fn several_tasks_make_a_batch() {

@@ -3,7 +3,7 @@
 use crate::option::OptionValue;
 use hasard_media::shell::quote;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// One run: a directory and the arguments of its process.
 #[derive(Clone, PartialEq, Debug)]
@@ -41,6 +41,16 @@ pub enum State {
 /// Options that change where or how fast a run is made but not what it is: they stay out of its
 /// directory's name.
 const NOT_IDENTITY: [&str; 4] = ["device", "threads", "json", "quiet"];
+
+/// The folder of an environment below a sweep's own: its id, or its file's path without what leads
+/// out of there.
+fn folder(environment: &str) -> PathBuf {
+    let normal = |part| match part {
+        Component::Normal(name) => Some(name.to_owned()),
+        _ => None,
+    };
+    Path::new(&environment.replace(',', "+")).components().filter_map(normal).collect()
+}
 
 impl Job {
     pub(crate) fn new(
@@ -82,7 +92,7 @@ impl Job {
                 names.push(named);
             }
         }
-        let mut directory = out.join(environment.replace(',', "+")).join(algorithm);
+        let mut directory = out.join(folder(environment)).join(algorithm);
         let options = names.join(",");
         if !options.is_empty() {
             directory.push(&options);

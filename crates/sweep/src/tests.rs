@@ -517,6 +517,13 @@ fn files_of_own_tasks_have_levels() {
     assert_eq!(grid(&["a.toml"], &[1]).environments(), ["a.toml"]);
     assert_eq!(grid(&["a.toml"], &[1, 3]).environments(), ["a.toml", "a.toml#3"]);
     assert_eq!(grid(&["a.toml#2"], &[1, 3]).environments(), ["a.toml#2"]);
+    // A path from elsewhere, or from the root, stays below the sweep's folder.
+    for (file, folder) in
+        [("../t/a.toml", "t/a.toml"), ("/t/a.toml#2", "t/a.toml#2"), ("./a.toml", "a.toml")]
+    {
+        let job = Job::new(Path::new("out"), file, "PPO", 64, 1, &[]);
+        assert_eq!(job.directory, Path::new("out").join(folder).join("PPO/seed1"));
+    }
     // Several tasks are one environment, whatever the levels of others.
     let several = "RemedyRushLevel1-v0,a.toml#2,b.toml";
     assert_eq!(grid(&[several], &[1, 3]).environments(), [several]);

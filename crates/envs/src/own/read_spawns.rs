@@ -130,9 +130,11 @@ fn kinds(node: &Node, mistakes: &mut Mistakes) -> Vec<(ActorKind, u32)> {
 }
 
 fn goal(fields: &mut Fields<'_>, zones: &[Zone], mistakes: &mut Mistakes) -> Goal {
-    let patrol: Vec<u8> = fields
-        .texts("patrol", mistakes)
-        .unwrap_or_default()
+    let patrol = fields.texts("patrol", mistakes).unwrap_or_default();
+    if let Some((_, at)) = patrol.get(16) {
+        mistakes.add(*at, "a patrol has at most 16 zones");
+    }
+    let patrol: Vec<u8> = patrol
         .into_iter()
         .filter_map(|(name, at)| zone(name, at, zones, mistakes))
         .take(16)

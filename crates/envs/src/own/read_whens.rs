@@ -10,6 +10,14 @@ use super::read_parts::{amount, place, range, term, zone};
 use super::tree::{Node, Value};
 use hasard_engine::world::{ActorKind, DamageKind};
 
+/// Most spawns of a rule, and most floors and lights.
+const MOST_SPAWNS: usize = 8;
+const MOST_MOVES: usize = 16;
+
+/// What is said of an episode beside its counters.
+const OF_EVERY_EPISODE: [&str; 7] =
+    ["health", "return", "cost", "length", "seed", "terminated", "truncated"];
+
 /// The events, and what `of` names in each.
 const EVENTS: [&str; 17] = [
     "start", "pickup", "damage", "death", "kill", "hit", "shot", "enter", "leave", "in", "land",
@@ -76,9 +84,15 @@ fn when(
         }
     };
     let spawn = fields.texts("spawn", mistakes).unwrap_or_default();
+    if let Some((_, at)) = spawn.get(MOST_SPAWNS) {
+        mistakes.add(
+            *at,
+            format!("at most {MOST_SPAWNS} spawns in a rule; give a second rule the rest"),
+        );
+    }
     let spawn = spawn
         .into_iter()
-        .take(8)
+        .take(MOST_SPAWNS)
         .filter_map(|(name, at)| spawn_named(name, at, spawns, mistakes))
         .collect();
     let floors = movers(fields.node("floor"), zones, mistakes);
@@ -301,8 +315,15 @@ fn counter(name: &str, at: usize, names: &mut Names, mistakes: &mut Mistakes) ->
     if !own_name(name, at, "counter", mistakes) {
         return None;
     }
-    if name == "health" || names.counters.len() == MOST_COUNTERS {
-        mistakes.add(at, format!("at most {MOST_COUNTERS} counters, none of them called health, which is a statistic already"));
+    if OF_EVERY_EPISODE.contains(&name) || name.starts_with("cost_") {
+        mistakes.add(
+            at,
+            format!("`{name}` is said of every episode already; call the counter otherwise"),
+        );
+        return None;
+    }
+    if names.counters.len() == MOST_COUNTERS {
+        mistakes.add(at, format!("at most {MOST_COUNTERS} counters"));
         return None;
     }
     names.counters.push(name.to_string());
@@ -401,6 +422,7 @@ fn costs(node: Option<&Node>, names: &mut Names, mistakes: &mut Mistakes) -> Vec
 
 /// `floor = { of = "door", to = -64, speed = 16 }`, or a list of such.
 fn movers(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(u8, i32, i32)> {
+    at_most(node, "floor", mistakes);
     each(node, |node| {
         let mut fields = Fields::of(node, "floor", mistakes);
         let place =
@@ -420,6 +442,7 @@ fn movers(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
 
 /// `light = { of = "hall", to = 0 }`, or a list of such.
 fn lights(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(u8, i32)> {
+    at_most(node, "light", mistakes);
     each(node, |node| {
         let mut fields = Fields::of(node, "light", mistakes);
         let place =
@@ -434,10 +457,23 @@ fn lights(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
     })
 }
 
+/// Refuses a longer list than a rule can have.
+fn at_most(node: Option<&Node>, key: &str, mistakes: &mut Mistakes) {
+    if let Some(Node { value: Value::List(items), at, .. }) = node
+        && items.len() > MOST_MOVES
+    {
+        let problem = format!(
+            "`{key}` has {} entries, a rule at most {MOST_MOVES}; give a second rule the rest",
+            items.len()
+        );
+        mistakes.add(*at, problem);
+    }
+}
+
 fn each<T>(node: Option<&Node>, read: impl FnMut(&Node) -> Option<T>) -> Vec<T> {
     match node.map(|node| (&node.value, node)) {
         None => Vec::new(),
-        Some((Value::List(items), _)) => items.iter().take(16).filter_map(read).collect(),
+        Some((Value::List(items), _)) => items.iter().take(MOST_MOVES).filter_map(read).collect(),
         Some((_, node)) => std::iter::once(node).filter_map(read).collect(),
     }
 }

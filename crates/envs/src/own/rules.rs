@@ -50,6 +50,9 @@ pub(super) struct OwnRules {
     /// What comes back, and when.
     pub returns: Vec<(u32, u8)>,
     pub walkers: Vec<Walker>,
+    /// Whether a rule has put the agent elsewhere in this tic: once is all, or two zones that send
+    /// it to each other would go on for ever.
+    moved: bool,
     /// Places that may still be tried in this tic: a file cannot make a tic last for ever.
     pub tries: u32,
     /// Notes spawns that find no room: for a rehearsal.
@@ -85,6 +88,7 @@ impl OwnRules {
             using: false,
             returns: Vec::new(),
             walkers: Vec::new(),
+            moved: false,
             tries: TRIES,
             unplaced: None,
             program,
@@ -184,7 +188,9 @@ impl OwnRules {
                 world.light_change_to_value(*tag, *level);
             }
         }
-        if let Some(place) = when.teleport {
+        if let Some(place) = when.teleport
+            && !std::mem::replace(&mut self.moved, true)
+        {
             move_player(program, place, super::model::Height::Above(0), &mut self.tries, world);
             self.look_around(program, world, outcome);
         }
@@ -203,9 +209,15 @@ impl OwnRules {
         self.changes.clear();
     }
 
-    /// Reads what the engine says has happened.
-    fn read_events(&mut self, program: &Program, world: &mut World, outcome: &mut Outcome) {
-        let mut next = 0;
+    /// Reads what the engine says has happened, from an event on; gives the first that is not read.
+    fn read_events(
+        &mut self,
+        program: &Program,
+        from: usize,
+        world: &mut World,
+        outcome: &mut Outcome,
+    ) -> usize {
+        let mut next = from;
         while next < world.events.len().min(MOST_EVENTS) {
             let event = world.events[next];
             next += 1;
@@ -280,6 +292,7 @@ impl OwnRules {
                 _ => {}
             }
         }
+        next
     }
 
     /// What was taken or killed comes back, if it is of those that do.
@@ -433,19 +446,30 @@ impl Rules for OwnRules {
         self.program.plan.green_goggles
     }
 
+    fn pays_the_opening(&self) -> bool {
+        true
+    }
+
     fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         let program = Arc::clone(&self.program);
         self.tries = if world.tic == 0 { OPENING_TRIES } else { TRIES };
+        self.moved = false;
         if world.tic == 0 {
             self.open(&program, world);
             self.look_around(&program, world, outcome);
+            self.moved = false;
             self.dispatch(&program, Occasion::Start, 1.0, world, outcome, |_| true);
         }
-        self.read_events(&program, world, outcome);
+        let mut read = self.read_events(&program, 0, world, outcome);
         self.look_around(&program, world, outcome);
         self.read_player(&program, world, outcome);
         self.read_clock(&program, world, outcome);
         self.follow_changes(&program, world, outcome);
+        // What the rules did, such as hurt the agent, has happened too.
+        while read < world.events.len().min(MOST_EVENTS) {
+            read = self.read_events(&program, read, world, outcome);
+            self.follow_changes(&program, world, outcome);
+        }
         if program.walkers {
             walkers::lead(&mut self.walkers, &program, world);
         }

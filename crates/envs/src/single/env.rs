@@ -165,7 +165,9 @@ impl Env {
         }
         let game = &mut self.game;
         game.world.prefetch();
-        (game.outcome.reward, game.outcome.costs) = (0.0, [0.0; MOST_TERMS]);
+        if self.totals.steps > 0 || !game.rules.pays_the_opening() {
+            (game.outcome.reward, game.outcome.costs) = (0.0, [0.0; MOST_TERMS]);
+        }
         self.happenings.clear();
         for _ in 0..self.blueprint.options.frame_skip {
             game.tic_noted(command, |world| {

@@ -5,6 +5,7 @@ use hasard_envs::EnvId;
 use crate::config::curriculum::Lesson;
 use crate::config::environment::EnvConfig;
 use crate::config::train_config::TrainConfig;
+use crate::error::LearnError;
 use crate::random::{Purpose, Stream};
 
 impl TrainConfig {
@@ -26,6 +27,23 @@ impl TrainConfig {
     #[must_use]
     pub fn lessons(&self) -> usize {
         self.curriculum.len().max(1)
+    }
+
+    /// Refuses lessons whose buttons differ, as those of a file's levels may: one network acts in
+    /// all.
+    pub(crate) fn check_lessons(&self) -> Result<(), LearnError> {
+        let space = |index: usize| self.lesson(index).env.action_space();
+        let first = if self.curriculum.is_empty() { None } else { space(0)? };
+        for (index, lesson) in self.curriculum.iter().enumerate().skip(1) {
+            let (first, other) = (first.as_ref().map(|one| one.sizes()), space(index)?);
+            if first != other.as_ref().map(|one| one.sizes()) {
+                return Err(LearnError::Config(format!(
+                    "--curriculum: level {} has other buttons than level {}; give levels of a file the same, or train on one",
+                    lesson.level, self.curriculum[0].level
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// The lesson after so many frames. The last one goes on for as long as the run does.

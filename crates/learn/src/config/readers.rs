@@ -2,8 +2,11 @@
 
 use crate::config::AlgorithmKind;
 
+/// Whether an algorithm reads a setting.
+type Reads = fn(AlgorithmKind) -> bool;
+
 /// Settings by the beginning of their names, the longer ones first, and who reads them.
-const READERS: [(&str, fn(AlgorithmKind) -> bool); 15] = [
+const READERS: [(&str, Reads); 15] = [
     ("multiplier_update", AlgorithmKind::has_multipliers),
     ("multiplier_limit", AlgorithmKind::has_multipliers),
     ("multiplier_", |one| {

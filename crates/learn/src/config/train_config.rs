@@ -240,6 +240,7 @@ impl TrainConfig {
             return refuse("budget_share of PPOSaute", &0, "above 0, as its budget is");
         }
         self.check_annealing()?;
+        self.check_lessons()?;
         self.check_value_phase()
     }
 

@@ -18,6 +18,12 @@ pub trait Rules: fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether what is earned and paid in the tics before the first step counts in that step; the
+    /// published scenarios pass it over.
+    fn pays_the_opening(&self) -> bool {
+        false
+    }
+
     /// The script phase of a tic: what the map's scripts do after everything has moved.
     fn script(&mut self, world: &mut World, outcome: &mut Outcome);
 
