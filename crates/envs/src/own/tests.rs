@@ -374,8 +374,8 @@ fn what_a_file_pays_at_the_start_counts_in_the_first_step() {
 /// every episode has.
 #[test]
 fn lists_that_are_too_long_and_names_that_are_taken_are_mistakes() {
-    let nine = vec!["\"vials\""; 9].join(", ");
-    let many = vec!["{ of = \"goal\", to = 0 }"; 17].join(", ");
+    let nine = ["\"vials\""; 9].join(", ");
+    let many = ["{ of = \"goal\", to = 0 }"; 17].join(", ");
     let vials = "[[spawn]]\nname = \"vials\"\nkind = \"HealthBonus\"\ncount = 0\nin = \"goal\"\n";
     for (rest, named) in [
         (format!("{vials}[[when]]\nevent = \"jump\"\nspawn = [{nine}]\n"), "at most 8 spawns"),
