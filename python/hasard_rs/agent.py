@@ -202,7 +202,7 @@ class Agent:
 
     def make(self, **arguments: Any) -> Any:
         """Returns a single environment like the one that the agent was trained in; `arguments` (see `help(hasard_rs.Env)`, by
-        either name) come before its own."""
+        either name) come before its own. Raises InvalidOption for an agent of several tasks, which `make_vec` makes a batch of."""
         import hasard_rs
 
         tasks = self._tasks()

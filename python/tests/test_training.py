@@ -96,6 +96,35 @@ def test_environments_of_agents_take_both_names(run: hasard_rs.Run) -> None:
     assert env.cost_terms == env.unwrapped.cost_terms
 
 
+def test_agents_of_own_tasks_know_them_in_another_process(tmp_path: Path) -> None:
+    table = {
+        "scenario": {"name": "AgentsGarden", "tics": 350, "budget": 3, "actions": [["MOVE_FORWARD"], ["JUMP"], ["USE"]]},
+        "map": {"ascii": "######\n#....#\n#.@..#\n#....#\n######"},
+        "spawn": [{"name": "vials", "kind": "HealthBonus", "count": 6}],
+        "when": [{"event": "pickup", "of": "vials", "reward": 1.0, "cost": {"greed": 0.5}}],
+    }
+    (tmp_path / "garden.toml").write_text(hasard_rs.Scenario.from_dict(table).text)
+    one, two = (
+        hasard_rs.train(tasks, "PPO", out=tmp_path / out, callback=lambda report: True, **SMALL)
+        for tasks, out in ((str(tmp_path / "garden.toml"), "one"), (f"{ENV.removeprefix('hasard/')},{tmp_path / 'garden.toml'}", "two"))
+    )
+    acts = """
+import sys, hasard_rs
+agent = hasard_rs.Agent.load(sys.argv[1])
+envs = agent.make_vec(2)
+observations, _ = envs.reset(seed=1)
+envs.step(agent.act(observations)[0])
+print(agent.make().unwrapped.scenario_name)
+"""
+    done = subprocess.run([sys.executable, "-c", acts, str(one.directory)], capture_output=True, text=True)
+    assert done.stdout == "AgentsGarden\n", done.stderr
+    done = subprocess.run([sys.executable, "-c", acts, str(two.directory)], capture_output=True, text=True)
+    assert "InvalidOption" in done.stderr and "several tasks; make_vec" in done.stderr
+    with pytest.raises(hasard_rs.InvalidOption, match="callback"):
+        hasard_rs.train(ENV, out=tmp_path / "three", callback=3, **SMALL)
+    assert not (tmp_path / "three").exists()
+
+
 def test_a_report_takes_one_folder_or_several(run: hasard_rs.Run, tmp_path: Path) -> None:
     """A text was taken letter by letter, and a path not at all."""
     for runs in (run.directory, str(run.directory), [run.directory]):
