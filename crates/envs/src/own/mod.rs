@@ -21,6 +21,8 @@ mod read_parts;
 mod read_spawns;
 mod read_whens;
 mod rehearsal;
+#[cfg(test)]
+mod rule_tests;
 mod rules;
 mod task;
 mod template;

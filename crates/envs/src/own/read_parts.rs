@@ -18,6 +18,19 @@ pub(super) fn zone(name: &str, at: usize, zones: &[Zone], mistakes: &mut Mistake
     found.map(|index| index as u8)
 }
 
+/// The same of a zone whose floor or light is to change: a rectangle has none of its own.
+pub(super) fn floors(name: &str, at: usize, zones: &[Zone], mistakes: &mut Mistakes) -> Option<u8> {
+    let found = zone(name, at, zones, mistakes)?;
+    if zones[usize::from(found)].area.is_some() {
+        mistakes.add(
+            at,
+            format!("zone `{name}` is a rectangle, without floor or light of its own; give its tiles a letter with zone = \"{name}\""),
+        );
+        return None;
+    }
+    Some(found)
+}
+
 /// A place: `free`, a zone, or a rectangle.
 pub(super) fn place(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Option<Place> {
     match &node.value {

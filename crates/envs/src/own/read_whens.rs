@@ -6,7 +6,7 @@ use super::fields::{Fields, own_name};
 use super::mistakes::{Mistakes, unknown};
 use super::model::{MOST_COUNTERS, Names, Of, Place, Spawn, Trigger, When, Zone};
 use super::read_map::known_kinds;
-use super::read_parts::{amount, place, range, term, zone};
+use super::read_parts::{amount, floors, place, range, term, zone};
 use super::tree::{Node, Value};
 use hasard_engine::world::{ActorKind, DamageKind};
 
@@ -426,7 +426,7 @@ fn movers(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
     each(node, |node| {
         let mut fields = Fields::of(node, "floor", mistakes);
         let place =
-            fields.text("of", mistakes).and_then(|(name, at)| zone(name, at, zones, mistakes));
+            fields.text("of", mistakes).and_then(|(name, at)| floors(name, at, zones, mistakes));
         let to = fields.whole("to", -2048, 2048, mistakes);
         let speed = fields.whole("speed", 1, 1024, mistakes).unwrap_or(16);
         if to.is_none() {
@@ -446,7 +446,7 @@ fn lights(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
     each(node, |node| {
         let mut fields = Fields::of(node, "light", mistakes);
         let place =
-            fields.text("of", mistakes).and_then(|(name, at)| zone(name, at, zones, mistakes));
+            fields.text("of", mistakes).and_then(|(name, at)| floors(name, at, zones, mistakes));
         let to = fields.whole("to", 0, 255, mistakes);
         if to.is_none() {
             mistakes
