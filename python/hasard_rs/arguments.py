@@ -6,6 +6,7 @@ import difflib
 import enum
 import os
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -123,9 +124,13 @@ def _env_id(task: dict[str, Any]) -> str:
     file = task.get("scenario_file")
     if file is None:
         return f"{scenario}Level{level}-v0"
-    ids = _core.register_scenario(*file)
+    return of_level(_core.register_scenario(*file), level, scenario)
+
+
+def of_level(ids: Sequence[str], level: Any, name: str) -> str:
+    """Returns the id of a `level` among `ids`, those of the scenario `name`. Raises InvalidOption for a level that it does not have."""
     if isinstance(level, bool) or not isinstance(level, int) or not 1 <= level <= len(ids):
-        raise InvalidOption(f"level cannot be {level!r}; the levels of {scenario} are 1 to {len(ids)}")
+        raise InvalidOption(f"level cannot be {level!r}; the levels of {name} are 1 to {len(ids)}")
     return ids[level - 1]
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hasard_rs import _core
-from hasard_rs.arguments import plain
+from hasard_rs.arguments import of_level, plain
 from hasard_rs.errors import InvalidOption
 
 
@@ -39,9 +39,7 @@ class OwnScenario:
     def _id(self, level: int) -> str:
         """The id of a level, which is this scenario's again if another of its name was made since, or in another process."""
         known = from_text(self.text, self.path).ids
-        if isinstance(level, bool) or not isinstance(level, int) or not 1 <= level <= len(known):
-            raise InvalidOption(f"level cannot be {level!r}; the levels of {self.path} are 1 to {len(known)}")
-        return known[level - 1]
+        return of_level(known, level, self.path)
 
 
 def is_file(env_id: Any) -> bool:
@@ -93,7 +91,7 @@ def from_dict(table: dict[str, Any], path: str = "scenario.toml") -> OwnScenario
 
     Returns and raises as `from_text`; TypeError for what TOML cannot hold.
     """
-    return from_text("".join(f"{_key(name)} = {_value(value)}\n" for name, value in table.items()), path)
+    return from_text("".join(f"{_key(name)} = {_value(value)}\n" for name, value in plain(table).items()), path)
 
 
 def opened(env_id: Any) -> str:
@@ -123,7 +121,6 @@ def _key(name: Any) -> str:
 
 def _value(value: Any) -> str:
     """The TOML of a value."""
-    value = plain(value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

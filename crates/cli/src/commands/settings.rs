@@ -1,11 +1,12 @@
 //! `hasard settings`: every setting of a run, its value in a preset, and what it means.
 
+use super::train_settings::rules_of;
 use crate::args::SettingsArgs;
 use crate::failure::{Failure, Outcome};
 use hasard_envs::RuleSet;
 use hasard_learn::config::explained::settings;
 use hasard_learn::config::settings::setting_pointer;
-use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
+use hasard_learn::config::{EnvConfig, TrainConfig};
 use serde_json::json;
 
 /// Runs the command.
@@ -13,9 +14,8 @@ pub fn run(args: &SettingsArgs) -> Outcome {
     let (algorithm, preset) =
         (args.algo.parse().map_err(Failure::bad)?, args.preset.parse().map_err(Failure::bad)?);
     let mut env = EnvConfig::new(&args.env);
-    // As `hasard train` has it.
-    if preset == Preset::Tables {
-        env.rules = RuleSet::Tables.name().into();
+    if let Some(rules) = rules_of(preset) {
+        env.rules = RuleSet::from(rules).name().into();
     }
     let config = TrainConfig::new(algorithm, preset, env).map_err(Failure::bad)?;
     let written = serde_json::to_value(config).map_err(Failure::bad)?;

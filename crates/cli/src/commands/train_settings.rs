@@ -15,10 +15,15 @@ use hasard_learn::config::{AlgorithmKind, Constraint, Preset, TrainConfig};
 pub fn with_rules(args: &TrainArgs, typed: &ArgMatches) -> TrainArgs {
     let mut args = args.clone();
     let given = typed.value_source("rules") == Some(ValueSource::CommandLine);
-    if !given && args.preset.parse().is_ok_and(|preset: Preset| preset == Preset::Tables) {
-        args.env_args.rules = Rules::Tables;
+    if let (false, Some(rules)) = (given, args.preset.parse().ok().and_then(rules_of)) {
+        args.env_args.rules = rules;
     }
     args
+}
+
+/// The rules that a preset belongs to, if it does.
+pub fn rules_of(preset: Preset) -> Option<Rules> {
+    (preset == Preset::Tables).then_some(Rules::Tables)
 }
 
 /// The settings of a fresh run: the preset's, then flags, then `--set`.

@@ -160,14 +160,14 @@ fn harmful(plan: &Plan, zones: u32) -> bool {
     // What lies below a rectangle is not looked up.
     let rectangle =
         plan.zones.iter().enumerate().any(|(zone, of)| zones >> zone & 1 == 1 && of.area.is_some());
-    match &plan.map {
-        _ if rectangle => true,
-        MapPlan::Tiles(tiles) => tiles.tiles.iter().any(|tile| {
-            let kind = &tiles.kinds[usize::from(*tile)];
-            kind.damage.is_some() && kind.zone.is_some_and(|zone| zones >> zone & 1 == 1)
-        }),
-        MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => true,
-    }
+    rectangle
+        || match &plan.map {
+            MapPlan::Tiles(tiles) => tiles.tiles.iter().any(|tile| {
+                let kind = &tiles.kinds[usize::from(*tile)];
+                kind.damage.is_some() && kind.zone.is_some_and(|zone| zones >> zone & 1 == 1)
+            }),
+            MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => true,
+        }
 }
 
 /// Whether a button is among the actions.

@@ -6,7 +6,7 @@ use super::model::{
     Facing, Light, MOST_LIGHTS, MOST_SPAWNS, MOST_WHENS, MOST_ZONES, MapPlan, Names, Plan,
     PlayerPlan, Zone,
 };
-use super::read_parts::{floors, height, place, range, rectangle, term};
+use super::read_parts::{ground, height, place, range, rectangle, term};
 use super::tree::{Node, Value};
 use super::{read_map, read_spawns, read_whens};
 use crate::spaces::action::BUTTONS;
@@ -257,7 +257,7 @@ fn light(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Option<Light> 
         own_name(name, at, "light", mistakes);
     }
     let zone = match fields.text("in", mistakes) {
-        Some((name, at)) => floors(name, at, zones, mistakes),
+        Some((name, at)) => ground(name, at, zones, mistakes),
         None => {
             mistakes.add(node.at, "[[light]] needs a zone: in = \"yard\"");
             None

@@ -19,7 +19,7 @@ pub(super) fn zone(name: &str, at: usize, zones: &[Zone], mistakes: &mut Mistake
 }
 
 /// The same of a zone whose floor or light is to change: a rectangle has none of its own.
-pub(super) fn floors(name: &str, at: usize, zones: &[Zone], mistakes: &mut Mistakes) -> Option<u8> {
+pub(super) fn ground(name: &str, at: usize, zones: &[Zone], mistakes: &mut Mistakes) -> Option<u8> {
     let found = zone(name, at, zones, mistakes)?;
     if zones[usize::from(found)].area.is_some() {
         mistakes.add(

@@ -6,12 +6,12 @@ use super::fields::{Fields, own_name};
 use super::mistakes::{Mistakes, unknown};
 use super::model::{MOST_COUNTERS, Names, Of, Place, Spawn, Trigger, When, Zone};
 use super::read_map::known_kinds;
-use super::read_parts::{amount, floors, place, range, term, zone};
+use super::read_parts::{amount, ground, place, range, term, zone};
 use super::tree::{Node, Value};
 use hasard_engine::world::{ActorKind, DamageKind};
 
-/// Most spawns of a rule, and most floors and lights.
-const MOST_SPAWNS: usize = 8;
+/// Most spawns that a rule puts, and most floors and lights that it moves.
+const MOST_OF_A_RULE: usize = 8;
 const MOST_MOVES: usize = 16;
 
 /// What is said of an episode beside its counters.
@@ -84,15 +84,15 @@ fn when(
         }
     };
     let spawn = fields.texts("spawn", mistakes).unwrap_or_default();
-    if let Some((_, at)) = spawn.get(MOST_SPAWNS) {
+    if let Some((_, at)) = spawn.get(MOST_OF_A_RULE) {
         mistakes.add(
             *at,
-            format!("at most {MOST_SPAWNS} spawns in a rule; give a second rule the rest"),
+            format!("at most {MOST_OF_A_RULE} spawns in a rule; give a second rule the rest"),
         );
     }
     let spawn = spawn
         .into_iter()
-        .take(MOST_SPAWNS)
+        .take(MOST_OF_A_RULE)
         .filter_map(|(name, at)| spawn_named(name, at, spawns, mistakes))
         .collect();
     let floors = movers(fields.node("floor"), zones, mistakes);
@@ -426,7 +426,7 @@ fn movers(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
     each(node, |node| {
         let mut fields = Fields::of(node, "floor", mistakes);
         let place =
-            fields.text("of", mistakes).and_then(|(name, at)| floors(name, at, zones, mistakes));
+            fields.text("of", mistakes).and_then(|(name, at)| ground(name, at, zones, mistakes));
         let to = fields.whole("to", -2048, 2048, mistakes);
         let speed = fields.whole("speed", 1, 1024, mistakes).unwrap_or(16);
         if to.is_none() {
@@ -446,7 +446,7 @@ fn lights(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
     each(node, |node| {
         let mut fields = Fields::of(node, "light", mistakes);
         let place =
-            fields.text("of", mistakes).and_then(|(name, at)| floors(name, at, zones, mistakes));
+            fields.text("of", mistakes).and_then(|(name, at)| ground(name, at, zones, mistakes));
         let to = fields.whole("to", 0, 255, mistakes);
         if to.is_none() {
             mistakes

@@ -7,8 +7,8 @@
 //! As the paper has it the surrogate is clipped pessimistically. Its advantages are standardised,
 //! as its authors' are, so the excess is divided by the same deviation: (J_C - d) / (L sigma_C).
 //! (The paper's (1 - gamma)(J_C - d) is the excess of discounted costs a step; budgets here are on
-//! sums, whose excess a step is that over the L steps that episodes have on average.) The released code uses
-//! the plain ratio, the excess per step beside standardised advantages, and kappa 1, which leaves
+//! sums, whose excess a step is that over the L steps that episodes have on average.) The released
+//! code uses the plain ratio, the excess per step beside standardised advantages, and kappa 1, which leaves
 //! little more than a switch on the sign of the excess. So does a single pass over a single
 //! minibatch, under any preset: ratios are 1 there and the surrogate is 0.
 

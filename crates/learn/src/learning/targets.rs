@@ -107,14 +107,13 @@ pub(crate) fn prepare<'a>(
             let (part, own) = rollout.find(lane);
             part.outputs[(step * part.lanes + own) * width + first + critic]
         };
-        let acted_by = *moments;
-        let by = (&acted_by, &acted_by);
+        let before = *moments;
+        let by = (&before, &before);
         let (advantages, returns) = estimates(rollout, shape, config, critic, by, value);
-        prepared.acted_by.push(acted_by);
+        prepared.acted_by.push(before);
         let mut old_values: Vec<f32> =
             (0..lanes).flat_map(|lane| (0..steps).map(move |step| value(lane, step))).collect();
         if popart {
-            let before = *moments;
             moments.update_forgetting(&returns, settings.normaliser_horizon);
             old_values
                 .iter_mut()

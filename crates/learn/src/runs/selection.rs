@@ -120,6 +120,14 @@ pub struct Selection {
     pub selection_frames: u64,
 }
 
+impl Selection {
+    /// Whether it is of a run that ended after so many frames.
+    #[must_use]
+    pub fn closes(&self, frames: u64) -> bool {
+        self.last.as_ref().is_some_and(|last| last.frames == frames)
+    }
+}
+
 /// The sets of episodes: their seeds have nothing in common.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum EpisodeSet {

@@ -202,9 +202,9 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
             // the run; only evaluations may still come.
             let learns = loaded.is_none() || at < config.frames;
             let changed = config != before && (learns || config.evaluation != before.evaluation);
-            let closed =
-                |known: &Selection| known.last.as_ref().is_some_and(|last| last.frames == at);
-            if changed && !learns && read_selection(run.path()).is_some_and(|known| closed(&known))
+            if changed
+                && !learns
+                && read_selection(run.path()).is_some_and(|known| known.closes(at))
             {
                 return Err(LearnError::content(
                     directory,
@@ -439,10 +439,8 @@ impl<'a> Trainer<'a> {
         stop: &AtomicBool,
     ) -> Result<Option<Option<Selection>>, LearnError> {
         // A run that had ended before is not closed anew.
-        let closed = |known: &Selection| {
-            known.last.as_ref().is_some_and(|last| last.frames == self.session.frames)
-        };
-        if let Some(known) = read_selection(self.run.path()).filter(closed) {
+        let known = read_selection(self.run.path());
+        if let Some(known) = known.filter(|known| known.closes(self.session.frames)) {
             store.keep_only(&[store.best_of(known.selected.frames)])?;
             return Ok(Some(Some(known)));
         }
