@@ -6,7 +6,7 @@
 Of each run: settings, selection, closing episodes, curves with a row for each percent of the frames, the last heatmap of each level
 with its map, and `eval.jsonl` if there is one. Agents are kept of the seeds that `--agents` names, for they are most of the bytes
 (with `--algorithms` of those algorithms alone).
-Numbers have six significant digits. Runs without a selection are passed over and counted. A run whose copy is there already is left
+Numbers have six significant digits, and episodes no name of their environment where it is the run's. Runs without a selection are passed over and counted. A run whose copy is there already is left
 alone; files of episodes beside the runs (`random-*.jsonl`) are copied too.
 """
 
@@ -28,7 +28,8 @@ EPISODES = ("closing_episodes.jsonl", "last_policy_episodes.jsonl", "eval.jsonl"
 
 def rounded(value):
     if isinstance(value, float):
-        return float(f"{value:.6g}")
+        short = float(f"{value:.6g}")
+        return int(short) if short.is_integer() else short
     if isinstance(value, list):
         return [rounded(one) for one in value]
     if isinstance(value, dict):
@@ -51,6 +52,11 @@ def thinned(rows):
     return [{name: value for name, value in row.items() if not any(part in name for part in LEFT_OUT)} for row in ordered]
 
 
+def without_env(rows, env):
+    """Episodes of a run, whose config.json names the environment: a tenth of their bytes."""
+    return [{name: value for name, value in row.items() if (name, value) != ("env", env)} for row in rows]
+
+
 def write_lines(path, rows):
     path.write_text("".join(json.dumps(rounded(row), separators=(",", ":")) + "\n" for row in rows))
 
@@ -60,13 +66,14 @@ def keep(run, copy, hasard, with_agent):
     half = copy.with_name(copy.name + ".part")
     shutil.rmtree(half, ignore_errors=True)
     half.mkdir(parents=True)
+    env = json.loads((run / "config.json").read_text())["env"]["id"]
     for name in WHOLE:
         (half / name).write_text(json.dumps(rounded(json.loads((run / name).read_text())), separators=(",", ":")) + "\n")
     for name in EPISODES:
         # Where the last policy is the selected one, its episodes are those already kept.
         same = name == EPISODES[1] and (run / EPISODES[0]).exists() and (run / name).read_bytes() == (run / EPISODES[0]).read_bytes()
         if (run / name).exists() and not same:
-            write_lines(half / name, lines(run / name))
+            write_lines(half / name, without_env(lines(run / name), env))
     write_lines(half / "metrics.jsonl", thinned(lines(run / "metrics.jsonl")))
     if (run / "heatmaps.jsonl").exists():
         last = {row.get("automap"): row for row in lines(run / "heatmaps.jsonl")}

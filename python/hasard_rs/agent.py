@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -49,7 +50,7 @@ class Run:
 
 
 def train(
-    env_id: str,
+    env_id: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     algorithm: str | None = None,
     *,
     preset: str | None = None,
@@ -63,7 +64,7 @@ def train(
     On a terminal a line shows how far it is.
 
     Args:
-        env_id: one of `ids()`, with or without `hasard/`.
+        env_id: one of `ids()`, with or without `hasard/`; the path of a task of your own; or a list of them, which the worlds take in turn.
         algorithm: PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP or IPO; None: the program's, PPOPID, or
             that of the run that is resumed.
         preset: "quick", "paper", "released" or "tables"; None: the program's, "quick".
@@ -85,7 +86,7 @@ def train(
         raise InvalidOption(f"callback cannot be {callback!r:.60}; it must be a function of a report, or None")
     words = training_words(env_id, algorithm, preset=preset, out=out, set=set, **flags)
     frames = flags.get("frames")
-    with Bar(int(frames) if isinstance(frames, (int, float)) else None) as bar:
+    with Bar(int(frames) if isinstance(frames, (int, float)) and math.isfinite(frames) else None) as bar:
 
         def hear(report: Report) -> Any:
             bar.show(report)
@@ -96,7 +97,7 @@ def train(
 
 
 def training_words(
-    env_id: str,
+    env_id: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     algorithm: str | None,
     *,
     preset: str | None = None,
@@ -106,7 +107,8 @@ def training_words(
 ) -> list[str]:
     """Returns what `train` is given (env_id, algorithm, preset, out, set and flags) as words of the program. Raises InvalidOption for
     one setting by two names that contradict each other."""
-    words = [bare(env_id), "--quiet"]
+    tasks = env_id if isinstance(env_id, (list, tuple)) else [env_id]
+    words = [",".join(bare(plain(task)) for task in tasks), "--quiet"]
     names = {"algorithm": algorithm, "preset": preset, "out": None if out is None else os.fspath(out), **flags}
     given: dict[str, tuple[str, list[str]]] = {}
     for other, value in names.items():
@@ -253,8 +255,11 @@ class Agent:
             "buttons" and "deltas" (float32 [n, 2] in [-1, 1]).
 
         Raises:
-            ValueError for observations of another shape, or cost terms that `after` was not given.
+            TypeError for observations that are no array of uint8; ValueError for those of another shape, or cost terms that `after` was not given.
         """
+        if not isinstance(observations, np.ndarray) or observations.dtype != np.uint8:
+            got = f"dtype {observations.dtype}" if isinstance(observations, np.ndarray) else f"{observations!r:.60}"
+            raise TypeError(f"observations must be an array of uint8, as environments give them, got {got}")
         single = observations.ndim == 3
         observations = observations[None] if single else observations
         state = self.begin(len(observations)) if state is None else state

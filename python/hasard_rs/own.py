@@ -73,11 +73,20 @@ def from_text(text: str, path: str = "scenario.toml") -> OwnScenario:
             entry_point="hasard_rs.env:entry",
             vector_entry_point="hasard_rs.vector:VectorEnv",
             # The text goes along, so that another process makes the same.
-            kwargs={"scenario": name, "level": index + 1, "scenario_file": [path, text]},
+            kwargs={"scenario": name, "level": index + 1, "scenario_file": [path, _Text(text)]},
             nondeterministic=False,
             disable_env_checker=True,
         )
     return OwnScenario(path, text, ids)
+
+
+class _Text(str):
+    """A file's text. Gymnasium's errors show an environment's arguments, where the whole of it would bury what is wrong."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} characters>"
 
 
 def from_file(path: str | os.PathLike[str]) -> OwnScenario:
@@ -91,6 +100,8 @@ def from_dict(table: dict[str, Any], path: str = "scenario.toml") -> OwnScenario
 
     Returns and raises as `from_text`; TypeError for what TOML cannot hold.
     """
+    if not isinstance(table, dict):
+        raise TypeError(f"a scenario's table must be a dict, got {table!r:.60}")
     return from_text("".join(f"{_key(name)} = {_value(value)}\n" for name, value in plain(table).items()), path)
 
 

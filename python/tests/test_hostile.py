@@ -85,6 +85,8 @@ def test_every_dtype_order_and_stride_acts_alike() -> None:
         ({"action_format": "text"}, hasard_rs.InvalidOption, "action_format"),
         ({"render_mode": "ansi"}, hasard_rs.InvalidOption, "render_mode"),
         ({"seed": -1}, ValueError, "negative"),
+        ({"safety_budget": float("nan")}, hasard_rs.InvalidOption, "safety_budget cannot be nan; it must be a number, 0 or more"),
+        ({"safety_budget": -1}, hasard_rs.InvalidOption, "safety_budget cannot be -1; it must be a number, 0 or more"),
         ({"max_episode_steps": 0}, hasard_rs.InvalidOption, "max_episode_steps"),
         ({"iwad": "/nowhere.wad"}, hasard_rs.InvalidOption, "/nowhere.wad"),
         ({"maps": 3}, hasard_rs.InvalidOption, "maps cannot be 3; it must be a path or 'auto'"),

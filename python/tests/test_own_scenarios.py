@@ -73,6 +73,11 @@ def test_mistakes_are_one_line_with_their_place(tmp_path: Path) -> None:
         hasard_rs.make(str(tmp_path / "none.toml"))
     with pytest.raises(TypeError, match="text, numbers"):
         hasard_rs.Scenario.from_dict({"scenario": {"name": None}})
+    with pytest.raises(TypeError, match="must be a dict, got None"):
+        hasard_rs.Scenario.from_dict(None)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="did you mean 'frame_skip'") as raised:
+        hasard_rs.Scenario.from_dict(GARDEN).make(frameskip=4)
+    assert len(str(raised.value)) < 300, "without the whole file"
 
 
 def test_the_last_of_a_name_counts() -> None:

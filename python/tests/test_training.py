@@ -153,6 +153,7 @@ def test_a_report_takes_one_folder_or_several(run: hasard_rs.Run, tmp_path: Path
 def test_flags_are_the_programs(given: dict, words: list[str]) -> None:
     assert training_words(ENV, "PPO", **given) == [ENV.removeprefix("hasard/"), "--quiet", "--algo=PPO", *words]
     assert training_words(ENV, None, algo="PPO", resume=True) == [ENV.removeprefix("hasard/"), "--quiet", "--algo=PPO", "--resume"]
+    assert training_words([Path("a.toml"), ENV], None) == ["a.toml," + ENV.removeprefix("hasard/"), "--quiet"]
     assert training_words(ENV, None, resume=True) == [ENV.removeprefix("hasard/"), "--quiet", "--resume"]
 
 
@@ -180,6 +181,9 @@ def test_agents_are_functions_of_what_they_are_given(run: hasard_rs.Run) -> None
     agent.act(observations, agent.after(after, np.ones(3), np.array([True, False, False])))
     with pytest.raises(ValueError, match="observations must have shape"):
         agent.act(observations[:, :, ::2], start)
+    for wrong in (observations.astype(np.float32), observations.tolist(), None):
+        with pytest.raises(TypeError, match="observations must be an array of uint8"):
+            agent.act(wrong, start)
     with pytest.raises(hasard_rs.HasardError, match="nowhere"):
         hasard_rs.Agent.load("nowhere")
 
@@ -213,7 +217,7 @@ def test_callbacks_that_raise_end_the_run(tmp_path: Path) -> None:
 
 
 def test_wrong_settings_write_nothing(tmp_path: Path) -> None:
-    for wrong in [{"algorithm": "PPOX"}, {"preset": "slow"}, {"set": {"nothing": 1}}, {"nonsense": 1}]:
+    for wrong in [{"frames": float("nan")}, {"algorithm": "PPOX"}, {"preset": "slow"}, {"set": {"nothing": 1}}, {"nonsense": 1}]:
         with pytest.raises(hasard_rs.InvalidOption):
             hasard_rs.train(ENV, out=tmp_path / "run", **wrong)
     assert not (tmp_path / "run").exists()

@@ -36,6 +36,7 @@ fn a_map_from_a_file_is_played_and_remembered() {
 fn bad_input_is_one_line_that_names_it_and_the_remedy() {
     let folder = Folder::new("bad");
     folder.file("empty", b"");
+    folder.file("empty.toml", b"");
     folder.file("binary.episode", &[0, 159, 146, 150, 255, 3]);
     folder.file("binary.agent", &[0, 159, 146, 150, 255, 3]);
     folder.file("cut.wad", b"IWAD\x05\0\0\0\x0c\0\0\0");
@@ -94,6 +95,12 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("report empty", &["empty"]),
         ("sweep none.toml", &["none.toml"]),
         ("sweep mian", &["mian", "safety-bounds"]),
+        ("sweep empty.toml", &["empty.toml", "`scenarios`"]),
+        ("verify none", &["none", "hasard claim"]),
+        ("scoreboard none", &["none", "hasard claim"]),
+        ("check task.toml#2", &["task.toml#2", "--level 2"]),
+        ("check task.toml --level 0", &["'0'", "--level"]),
+        ("serve --listen localhost", &["localhost", "127.0.0.1:8350"]),
         ("train RemedyRushLevel1-v0 --curriculum 1,2,9", &["1,2,9", "1,2,3"]),
         ("train RemedyRushLevel1-v0 --algo PPOX", &["PPOX", "PPOLag"]),
         ("train RemedyRushLevel1-v0 --out empty", &["empty"]),
@@ -117,7 +124,7 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
     }
     let left: Vec<_> =
         std::fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left.len(), 6, "a refused command left something behind: {left:?}");
+    assert_eq!(left.len(), 7, "a refused command left something behind: {left:?}");
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn serve(folder: &Path, listen: &str) -> (Running, String) {
 fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     let Some(browser) = Browser::open(1280, 1000, false) else { return };
     let folder = folder("agent");
-    let (server, address) = serve(&folder, "127.0.0.1:0");
+    let (server, address) = serve(&folder, "localhost:0");
     browser.go(&address);
     browser.wait("document.body.innerText.includes('No runs yet')");
     // A training begins; its row appears and moves.

@@ -82,7 +82,15 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
             "seed" if value.is_none() => arguments.seed = None,
             "seed" => arguments.seed = Some(seed(&value)?),
             "safety_budget" if value.is_none() => arguments.safety_budget = None,
-            "safety_budget" => arguments.safety_budget = Some(typed(&name, &value, "a number")?),
+            "safety_budget" => {
+                let budget: f64 = typed(&name, &value, "a number")?;
+                if budget.is_nan() || budget < 0.0 {
+                    let text = shown(&value);
+                    let why = format!("{name} cannot be {text}; it must be a number, 0 or more");
+                    return Err(INVALID_OPTION.error(py, why));
+                }
+                arguments.safety_budget = Some(budget);
+            }
             "iwad" => iwad = typed(&name, &value, "a path or 'auto'")?,
             "maps" | "map" if value.is_none() => {}
             "maps" | "map" => {

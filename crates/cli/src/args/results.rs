@@ -49,6 +49,15 @@ pub struct SiteArgs {
     pub seed: UnusedSeed,
 }
 
+/// An address and a port; a name such as localhost is looked up, IPv4 first.
+fn listening(text: &str) -> Result<std::net::SocketAddr, String> {
+    use std::net::ToSocketAddrs;
+    let wrong = |why: String| format!("{why}; give an address and a port, such as 127.0.0.1:8350");
+    let found: Vec<_> = text.to_socket_addrs().map_err(|why| wrong(why.to_string()))?.collect();
+    let first = found.iter().find(|one| one.is_ipv4()).or(found.first());
+    first.copied().ok_or_else(|| wrong("it has no address".into()))
+}
+
 /// `hasard serve`.
 #[derive(Args, Debug)]
 pub struct ServeArgs {
@@ -57,7 +66,7 @@ pub struct ServeArgs {
     #[arg(value_name = "RUNS")]
     pub runs: Vec<PathBuf>,
     /// Address to listen at; beyond this machine only with the token that is printed
-    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8350")]
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8350", value_parser = listening)]
     pub listen: std::net::SocketAddr,
     /// What visitors must know; drawn anew if absent and --listen goes beyond this machine
     #[arg(long, value_name = "TEXT")]

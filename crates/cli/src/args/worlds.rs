@@ -48,7 +48,7 @@ pub struct CheckArgs {
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// The level that is drawn
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..))]
     pub level: u8,
     /// Seed of the episode whose start is drawn
     #[arg(long, default_value_t = 0)]

@@ -13,6 +13,12 @@ const SIDE: usize = 800;
 /// Runs the command.
 pub fn run(args: &CheckArgs) -> Outcome {
     args.out.as_deref().map_or(Ok(()), is_png)?;
+    let name = args.file.to_string_lossy();
+    if let Some((whole, level)) = name.rsplit_once('#').filter(|_| !args.file.exists()) {
+        return Err(Failure::bad(format!(
+            "{name}: all levels are checked; give {whole}, and --level {level} to draw that one"
+        )));
+    }
     let text = own::read_text(&args.file).map_err(Failure::bad)?;
     let checked = own::check(&text);
     let file = args.file.display().to_string();

@@ -86,7 +86,12 @@ pub fn run(args: &ClaimArgs) -> Outcome {
 
 /// The claims of a folder, by name; one without any is refused.
 pub fn claims(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let unread = |error| Failure::bad(format!("{}: cannot be read: {error}", folder.display()));
+    let unread = |error| {
+        Failure::bad(format!(
+            "{}: cannot be read: {error}; name a folder of claims, which `hasard claim --out` writes",
+            folder.display()
+        ))
+    };
     let mut found: Vec<PathBuf> =
         std::fs::read_dir(folder).map_err(unread)?.flatten().map(|entry| entry.path()).collect();
     found.retain(|path| {

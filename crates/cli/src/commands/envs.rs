@@ -8,14 +8,14 @@ use std::io::Write;
 
 /// Runs the command.
 pub fn run(args: &EnvsArgs) -> Outcome {
-    let mut out = std::io::stdout().lock();
-    if !args.json {
-        writeln!(out, "{:<28} {:>6}  {:<40} full", "id", "budget", "simplified actions")?;
-    }
     let mut ids: Vec<EnvId> =
         if args.files.is_empty() { EnvId::all().collect() } else { Vec::new() };
     for file in &args.files {
         ids.extend(crate::settings::env_id(file)?.scenario.environments());
+    }
+    let mut out = std::io::stdout().lock();
+    if !args.json {
+        writeln!(out, "{:<28} {:>6}  {:<40} full", "id", "budget", "simplified actions")?;
     }
     for id in ids {
         let budget = id.scenario.safety_budget(args.rules.into());

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 pub fn run(args: &NewArgs) -> Outcome {
     let name = scenario_name(&args.name).ok_or_else(|| {
         Failure::bad(format!(
-            "{}: a task's name has letters, digits and _, a letter first: my_task",
+            "'{}': a task's name has letters, digits and _, a letter first: my_task",
             args.name
         ))
     })?;

@@ -11,6 +11,12 @@ use std::path::Path;
 /// Runs the command.
 pub fn run(args: &VerifyArgs) -> Outcome {
     let mut refused = 0;
+    if args.claim.try_exists().is_ok_and(|there| !there) {
+        return Err(Failure::bad(format!(
+            "{}: there is no such claim or folder; `hasard claim` writes a claim",
+            args.claim.display()
+        )));
+    }
     let paths = if args.claim.is_dir() { claims(&args.claim)? } else { vec![args.claim.clone()] };
     let threads = args.threads.map_or_else(cores, usize::from);
     for path in &paths {

@@ -1,8 +1,11 @@
 //! What a file says that can never happen.
 
 use super::mistakes::Mistakes;
-use super::model::{MapPlan, Names, Of, Plan, Trigger};
+use super::model::{GenerateKind, MapPlan, Names, Of, Plan, TileKind, Trigger};
 use hasard_engine::world::ActorKind;
+
+/// Height of the agent, map units: it goes nowhere that is lower.
+const AGENT_HEIGHT: i32 = 56;
 
 /// Warns of what happens in none of the settings.
 pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
@@ -31,6 +34,7 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
             "no tile is a start: the agent stands in the south-west; draw an @, or write [player] in = \"free\"",
         );
     }
+    warn_of_low_ceilings(plans, mistakes);
     for (index, spawn) in first.spawns.iter().enumerate() {
         let used = |plan: &Plan| {
             let spawn = plan
@@ -59,6 +63,44 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
         };
         if !plans.iter().any(charged) {
             mistakes.warn(0, format!("cost term {} is charged by no [[when]]", term.name));
+        }
+    }
+}
+
+/// Warns of places that the agent is put on and has no room to stand, and of platforms too near the
+/// ceiling to walk on.
+fn warn_of_low_ceilings(plans: &[Plan], mistakes: &mut Mistakes) {
+    for plan in plans {
+        let MapPlan::Tiles(tiles) = &plan.map else { continue };
+        let here = |kind: &TileKind| {
+            tiles.generate.is_some()
+                || tiles.tiles.iter().any(|tile| tiles.kinds[usize::from(*tile)] == *kind)
+        };
+        let low = |kind: &&TileKind| {
+            kind.start && !kind.rock && here(kind) && kind.ceiling - kind.floor[1] < AGENT_HEIGHT
+        };
+        if let Some(kind) = tiles.kinds.iter().find(low) {
+            mistakes.warn(
+                0,
+                format!(
+                    "the agent is {AGENT_HEIGHT} high, and there are {} from floor to ceiling at its start `{}`: it cannot move",
+                    kind.ceiling - kind.floor[1],
+                    kind.letter
+                ),
+            );
+        }
+        let ground = tiles.kinds.iter().find(|kind| kind.letter == '.');
+        if let (Some(generate), Some(ground)) = (tiles.generate, ground)
+            && generate.kind == GenerateKind::Platforms
+            && generate.heights[1] + AGENT_HEIGHT > ground.ceiling
+        {
+            mistakes.warn(
+                0,
+                format!(
+                    "platforms of heights up to {} leave the agent, {AGENT_HEIGHT} high, no room below the ceiling of {}: lower `heights`, or raise the ceiling of letter `.`",
+                    generate.heights[1], ground.ceiling
+                ),
+            );
         }
     }
 }

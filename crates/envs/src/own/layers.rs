@@ -2,6 +2,7 @@
 //! `[rules.NAME]` change of it.
 
 use super::mistakes::{Mistakes, excerpt, unknown};
+use super::read_map::SOURCES;
 use super::tree::{Entry, Node, Value};
 use crate::RuleSet;
 use crate::scenarios::Setting;
@@ -102,6 +103,7 @@ pub(super) fn document(root: &Node, setting: Setting, mistakes: &mut Mistakes) -
             if depth == 0 {
                 put(&mut document, entry.clone());
             } else {
+                leave_other_maps(&mut document, entry);
                 change(&mut document, entry, mistakes);
             }
         }
@@ -124,6 +126,26 @@ fn collect<'n>(
     ];
     for entry in within.into_iter().flatten() {
         collect(&entry.node, setting, depth + 1, layers);
+    }
+}
+
+/// A layer that says what the map is made of says it in place of what the file says: a drawing
+/// gives way to a maze.
+fn leave_other_maps(document: &mut Node, entry: &Entry) {
+    let says = |source: &str| match entry.key.strip_prefix("map") {
+        Some("") => entry.node.get(source).is_some(),
+        Some(path) => {
+            path.strip_prefix('.').and_then(|path| path.split('.').next()) == Some(source)
+        }
+        None => false,
+    };
+    if !SOURCES.into_iter().any(says) {
+        return;
+    }
+    let Value::Table(sections) = &mut document.value else { return };
+    let map = sections.iter_mut().find(|section| section.key == "map");
+    if let Some(Value::Table(fields)) = map.map(|map| &mut map.node.value) {
+        fields.retain(|field| !SOURCES.contains(&&*field.key) || says(&field.key));
     }
 }
 

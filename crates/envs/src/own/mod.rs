@@ -19,6 +19,7 @@ mod read;
 mod read_map;
 mod read_parts;
 mod read_spawns;
+mod read_tiles;
 mod read_whens;
 mod rehearsal;
 #[cfg(test)]

@@ -156,7 +156,7 @@ fn zones(node: &Node, mistakes: &mut Mistakes) -> Vec<Zone> {
     };
     let mut zones = Vec::new();
     for entry in entries {
-        own_name(&entry.key, entry.at, "zone", mistakes);
+        read_map::zone_name(&entry.key, entry.at, mistakes);
         let mut fields = Fields::of(&entry.node, "a zone", mistakes);
         let of_area = fields.node("area");
         let area = of_area.and_then(|node| rectangle(node, "area", mistakes));

@@ -1,17 +1,17 @@
 //! Reads `[map]`: tiles drawn with letters, the map of a built-in scenario, of a file, or one made
 //! anew at each reset.
 
-use super::fields::{Fields, wholes};
-use super::map_file;
+use super::fields::{Fields, own_name, wholes};
 use super::mistakes::{Mistakes, excerpt, unknown};
-use super::model::{Generate, GenerateKind, MOST_ZONES, MapPlan, TileKind, Tiles, Zone};
-use super::textures;
+use super::model::{MOST_ZONES, MapPlan, TileKind, Zone};
+use super::read_tiles::{drawn, generated};
 use super::tree::{Node, Value};
+use super::{map_file, textures};
 use crate::Scenario;
 use hasard_engine::world::ActorKind;
 
-/// Most tiles a side: a map of them is built in a few milliseconds.
-const MOST_TILES: usize = 64;
+/// The fields of which `[map]` has one: what the map is made of.
+pub(super) const SOURCES: [&str; 5] = ["ascii", "builtin", "wad", "udmf", "generate"];
 
 /// Reads the section. Zones of tiles are added to `zones`.
 pub(super) fn map(
@@ -35,15 +35,8 @@ pub(super) fn map(
     let level = fields.whole("level", 1, 3, mistakes).unwrap_or(1) as u8;
     let legend = fields.node("legend");
     fields.finish(mistakes);
-    let sources = [
-        ("ascii", ascii.is_some()),
-        ("builtin", built_in.is_some()),
-        ("wad", wad.is_some()),
-        ("udmf", udmf.is_some()),
-        ("generate", generate.is_some()),
-    ];
     let given: Vec<&str> =
-        sources.iter().filter(|(_, there)| *there).map(|(name, _)| *name).collect();
+        SOURCES.into_iter().filter(|source| node.get(source).is_some()).collect();
     if let [first, .., last] = given[..] {
         let all = if given.len() == 2 { "both".to_string() } else { given.len().to_string() };
         mistakes.add(
@@ -249,13 +242,21 @@ fn tile_kind(
     kind
 }
 
+/// Whether a zone can have a name; notes why not.
+pub(super) fn zone_name(name: &str, at: usize, mistakes: &mut Mistakes) -> bool {
+    if name == "free" {
+        mistakes.add(at, "`free` is every place that does not hurt; call the zone otherwise");
+        return false;
+    }
+    own_name(name, at, "zone", mistakes)
+}
+
 /// The zone of that name, new if there is none.
 fn tile_zone(name: &str, at: usize, zones: &mut Vec<Zone>, mistakes: &mut Mistakes) -> Option<u8> {
     if let Some(index) = zones.iter().position(|zone| zone.name == name) {
         return Some(index as u8);
     }
-    if name == "free" || !super::fields::own_name(name, at, "zone", mistakes) {
-        mistakes.add(at, "`free` is every place that does not hurt; call the zone otherwise");
+    if !zone_name(name, at, mistakes) {
         return None;
     }
     if zones.len() == MOST_ZONES {
@@ -279,110 +280,4 @@ pub(super) fn actor(name: &str, at: usize, mistakes: &mut Mistakes) -> Option<Ac
         mistakes.add(at, unknown("kind of thing", name, known_kinds().map(ActorKind::class_name)));
     }
     found
-}
-
-fn drawn(
-    text: &str,
-    at: usize,
-    side: i32,
-    kinds: Vec<TileKind>,
-    mistakes: &mut Mistakes,
-) -> Option<Tiles> {
-    let lines: Vec<Vec<char>> =
-        text.lines().map(|line| line.trim_end().chars().collect()).collect();
-    let first = lines.iter().position(|line: &Vec<char>| !line.is_empty());
-    let last = lines.iter().rposition(|line| !line.is_empty());
-    let (Some(first), Some(last)) = (first, last) else {
-        mistakes
-            .add(at, "the map is empty; draw it with # for rock, . for ground, @ for the start");
-        return None;
-    };
-    let lines = &lines[first..=last];
-    let (columns, rows) = (lines.iter().map(Vec::len).max().unwrap_or(0), lines.len());
-    if columns > MOST_TILES || rows > MOST_TILES {
-        mistakes.add(
-            at,
-            format!("the map has {columns} x {rows} tiles; at most {MOST_TILES} x {MOST_TILES}"),
-        );
-        return None;
-    }
-    let rock = kinds.iter().position(|kind| kind.rock).unwrap_or(0) as u8;
-    let mut tiles = vec![rock; columns * rows];
-    for (row, line) in lines.iter().enumerate() {
-        for (column, letter) in line.iter().enumerate() {
-            match kinds.iter().position(|kind| kind.letter == *letter) {
-                Some(kind) => tiles[(rows - 1 - row) * columns + column] = kind as u8,
-                None => {
-                    let known: Vec<String> =
-                        kinds.iter().map(|kind| kind.letter.to_string()).collect();
-                    let letter = excerpt(&letter.to_string());
-                    let at = mistakes.within_drawing(at, first + row, column);
-                    mistakes.add(
-                        at,
-                        format!("the legend has no letter `{letter}`, only {}", known.join(" ")),
-                    );
-                }
-            }
-        }
-    }
-    if tiles.iter().all(|tile| kinds[usize::from(*tile)].rock) {
-        mistakes.add(at, "the map is all rock; draw ground with a full stop");
-        return None;
-    }
-    Some(Tiles { side, columns, rows, tiles, kinds, generate: None })
-}
-
-fn generated(
-    node: &Node,
-    side: i32,
-    kinds: Vec<TileKind>,
-    mistakes: &mut Mistakes,
-) -> Option<Tiles> {
-    let mut fields = Fields::of(node, "[map.generate]", mistakes);
-    let kind = match fields.text("kind", mistakes) {
-        Some(("maze", _)) => Some(GenerateKind::Maze),
-        Some(("rooms", _)) => Some(GenerateKind::Rooms),
-        Some(("columns", _)) => Some(GenerateKind::Columns),
-        Some(("platforms", _)) => Some(GenerateKind::Platforms),
-        Some((other, at)) => {
-            mistakes
-                .add(at, unknown("kind of map", other, ["maze", "rooms", "columns", "platforms"]));
-            None
-        }
-        None => {
-            mistakes.add(node.at, "[map.generate] needs a kind: maze, rooms, columns or platforms");
-            None
-        }
-    };
-    let columns = fields.whole("columns", 3, 31, mistakes).unwrap_or(13) as usize;
-    let rows = fields.whole("rows", 3, 31, mistakes).unwrap_or(13) as usize;
-    let share = (fields.number("share", 0.0, 0.9, mistakes).unwrap_or(0.3) * 1000.0) as u32;
-    let loops = (fields.number("loops", 0.0, 1.0, mistakes).unwrap_or(0.0) * 1000.0) as u32;
-    let train_seeds = fields.whole("train_seeds", 0, 1_000_000_000, mistakes).unwrap_or(0) as u32;
-    let room = fields.whole("room", 2, 16, mistakes).unwrap_or(4) as u32;
-    let heights = fields
-        .node("heights")
-        .and_then(|node| wholes::<2>(node, "heights", -512, 512, mistakes))
-        .unwrap_or([0, 24]);
-    if heights[0] > heights[1] {
-        mistakes.add(node.at, "heights = [lowest, highest]: the lower one comes first");
-    }
-    fields.finish(mistakes);
-    let kind = kind?;
-    if kind == GenerateKind::Maze && (columns.is_multiple_of(2) || rows.is_multiple_of(2)) {
-        mistakes.add(
-            node.at,
-            "a maze has an odd number of columns and of rows: corridors and walls by turns",
-        );
-    }
-    let ground = kinds.iter().position(|kind| kind.letter == '.').unwrap_or(0) as u8;
-    let heights = [heights[0], heights[1].max(heights[0])];
-    Some(Tiles {
-        side,
-        columns,
-        rows,
-        tiles: vec![ground; columns * rows],
-        kinds,
-        generate: Some(Generate { kind, share, room, loops, heights, train_seeds }),
-    })
 }

@@ -318,3 +318,47 @@ fn hidden_kinds_are_never_named() {
         }
     }
 }
+
+/// A level may be drawn, made anew, or of a scenario of the benchmark, whatever the others are.
+#[test]
+fn a_level_may_have_another_kind_of_map() {
+    let maze = "[levels.2.map.generate]\nkind = \"maze\"\ncolumns = 9\nrows = 9\n";
+    let built_in = "[levels.3]\n\"map.builtin\" = \"RemedyRush\"\n";
+    let checked = check(&corridor(&format!("{maze}{built_in}")));
+    assert!(checked.can_be_played(), "{:#?}", checked.mistakes);
+    let two = corridor("[levels.2.map]\nbuiltin = \"RemedyRush\"\nwad = \"x.wad\"\n");
+    assert!(check(&two).mistakes[0].text.contains("has both, builtin and wad"));
+}
+
+#[test]
+fn no_room_for_the_agent_is_warned_of() {
+    let warned = |text: &str, words: &str| {
+        let checked = check(text);
+        assert!(checked.can_be_played(), "{:#?}", checked.mistakes);
+        checked.mistakes.iter().any(|one| one.warning && one.text.contains(words))
+    };
+    let start = |ceiling| {
+        corridor(&format!("\"@\" = {{ like = \".\", start = true, ceiling = {ceiling} }}\n"))
+    };
+    assert!(warned(&start(55), "55 from floor to ceiling at its start `@`"));
+    assert!(!warned(&start(56), "from floor to ceiling"));
+    let platforms = |high| {
+        corridor(&format!("[levels.2.map.generate]\nkind = \"platforms\"\nheights = [0, {high}]\n"))
+    };
+    assert!(warned(&platforms(73), "below the ceiling of 128"));
+    assert!(!warned(&platforms(72), "below the ceiling"));
+}
+
+#[test]
+fn a_map_too_wide_and_a_zone_called_free_are_refused_at_their_place() {
+    let wide =
+        corridor("").replace("[map]\n", "[map]\ntile = 512\n").replace("#####", &"#".repeat(32));
+    let first = &check(&wide).mistakes[0];
+    assert!(first.text.contains("at most 31 a side") && first.line > 1, "{first}");
+    let free = corridor("[zones]\nfree = { area = [0, 0, 64, 64] }\n");
+    let found = check(&free).mistakes;
+    assert!(
+        found.iter().any(|one| !one.warning && one.text.starts_with("`free` is every place")),
+        "{found:#?}"
+    );
+}

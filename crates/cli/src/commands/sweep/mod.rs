@@ -30,7 +30,8 @@ pub fn run(args: &SweepArgs) -> Outcome {
     }
     let Described { mut sweep, chooses_frames } = description(&args.what)?;
     change(&mut sweep, args)?;
-    let mut jobs = sweep.jobs().map_err(Failure::bad)?;
+    let named = |error| Failure::bad(format!("{}: {error}", args.what.to_string_lossy()));
+    let mut jobs = sweep.jobs().map_err(named)?;
     let mut configs = settings(&jobs)?;
     if let Some(scale) = args.scale {
         for (job, config) in jobs.iter_mut().zip(&configs) {
