@@ -1,5 +1,8 @@
 //! Numbers and names as people write them.
 
+use hasard_envs::EnvId;
+use hasard_envs::own::{is_file, open};
+
 /// The whole number that a text such as `2000000`, `2_000_000`, `2,000,000`, `2M`, `1.5M`, `400k`
 /// or `1e6` stands for.
 ///
@@ -55,39 +58,40 @@ pub fn positive(text: &str) -> Result<u64, String> {
 pub fn env_id(text: &str) -> Result<String, String> {
     if text.contains(',') && !std::path::Path::new(text).exists() {
         let words: Vec<&str> = text.split(',').map(str::trim).collect();
-        let ids = words.iter().map(|id| env_id(id)).collect::<Result<Vec<String>, String>>()?;
-        let same_name = |(first, second): (usize, usize)| {
-            let (one, other) = (words[first], words[second]);
-            let files = hasard_envs::own::is_file(one) && hasard_envs::own::is_file(other);
-            ids[first] == ids[second] && files && !same_text(one, other)
-        };
-        let pairs = (0..ids.len()).flat_map(|second| (0..second).map(move |first| (first, second)));
-        if let Some((first, second)) = pairs.into_iter().find(|pair| same_name(*pair)) {
-            return Err(format!(
-                "{} and {} are both {}; give one of them another `name`",
-                words[first], words[second], ids[first]
-            ));
+        let mut ids = Vec::new();
+        let mut own: Vec<(&str, EnvId)> = Vec::new();
+        for &word in &words {
+            if !is_file(word) {
+                ids.push(env_id(word)?);
+                continue;
+            }
+            let id = open(word).map_err(|error| error.to_string())?;
+            // Equal texts are one scenario, wherever they are read from.
+            let other = own.iter().find(|(_, other)| {
+                other.scenario != id.scenario
+                    && other.scenario.name.eq_ignore_ascii_case(id.scenario.name)
+            });
+            if let Some((other, _)) = other {
+                return Err(format!(
+                    "{other} and {word} are both {}; give one of them another `name`",
+                    id.scenario.name
+                ));
+            }
+            own.push((word, id));
+            ids.push(id.to_string());
         }
         return Ok(ids.join(","));
     }
-    if hasard_envs::own::is_file(text) {
-        return hasard_envs::own::open(text)
-            .map(|id| id.to_string())
-            .map_err(|error| error.to_string());
+    if is_file(text) {
+        return open(text).map(|id| id.to_string()).map_err(|error| error.to_string());
     }
     let plain = text.to_ascii_lowercase();
     let plain = plain.strip_prefix("hasard/").unwrap_or(&plain);
     let plain = plain.strip_suffix("-v0").unwrap_or(plain);
-    let known = hasard_envs::EnvId::every()
+    let known = EnvId::every()
         .map(|id| id.to_string())
         .find(|id| id.trim_end_matches("-v0").eq_ignore_ascii_case(plain));
     Ok(known.unwrap_or_else(|| text.to_string()))
-}
-
-/// Whether two scenarios' files say the same.
-fn same_text(one: &str, other: &str) -> bool {
-    let read = |word: &str| std::fs::read(word.split('#').next().unwrap_or(word)).ok();
-    read(one) == read(other)
 }
 
 #[cfg(test)]

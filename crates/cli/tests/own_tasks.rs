@@ -110,12 +110,16 @@ fn tasks_that_cannot_be_trained_together_are_refused_before_the_first_frame() {
     folder.ok("new garden");
     let text = String::from_utf8(folder.read("garden.toml")).unwrap();
     let more = "\n[levels.2]\nscenario.actions = [[\"TURN_LEFT\", \"TURN_RIGHT\"], [\"MOVE_FORWARD\"], [\"JUMP\"], [\"USE\"]]\n";
-    std::fs::write(folder.0.join("levels.toml"), text.clone() + more).unwrap();
+    let levels = text.clone() + more;
+    folder.file("levels.toml", levels.as_bytes());
     let line = folder.refused("train levels.toml --curriculum 1:64,2:64 --out run");
     assert!(line.contains("level 2 has other buttons than level 1"), "{line}");
     std::fs::write(folder.0.join("other.toml"), text + "\n# another file\n").unwrap();
     let line = folder.refused("train garden.toml,other.toml --frames 64 --out run");
     assert!(line.contains("garden.toml and other.toml are both"), "{line}");
+    folder.file("another.toml", (levels.clone() + "# of two levels\n").as_bytes());
+    let line = folder.refused("train levels.toml#1,another.toml#2 --frames 64 --out run");
+    assert!(line.contains("levels.toml#1 and another.toml#2 are both"), "{line}");
     assert!(!folder.0.join("run").exists());
 }
 

@@ -366,6 +366,32 @@ fn p3o_counts_advantage_and_excess_in_one_unit() {
     }
 }
 
+/// Where costs are all but absent their advantages are the critic's noise. With a floor the penalty's
+/// gradient is the paper's divided by the floor, which goes to 0 with the noise.
+#[test]
+fn p3o_does_not_blow_up_noise() {
+    let size = |scale: f32, floor: f64| {
+        let mut config = config(AlgorithmKind::P3o, Preset::Paper);
+        config.learning.advantage_floor = floor;
+        let p3o = p3o::P3o::new(&config);
+        let mut case = Case::new(discrete(), 0.3);
+        case.advantages[1].iter_mut().for_each(|value| *value *= scale);
+        let none = vec![0.0; ROWS];
+        let with = |cost| {
+            case.found(|heads, batch, means| p3o.loss(&none, &[signal(cost)], heads, batch, means))
+                .1
+        };
+        // Far below the budget there is no penalty: the difference is its gradient.
+        let (on, off) = (with(50.0), with(-1e9));
+        on.iter().zip(&off).map(|(on, off)| (on - off).powi(2)).sum::<f64>().sqrt()
+    };
+    let noise = 1e-4;
+    assert!((size(noise, 0.0) / size(1.0, 0.0) - 1.0).abs() < 1e-3);
+    let ratio = size(noise, 0.01) / size(2.0 * noise, 0.01);
+    assert!((ratio - 0.5).abs() < 1e-3, "{ratio}");
+    assert!(size(noise, 0.01) < 0.05 * size(noise, 0.0));
+}
+
 /// FOCOPS' corollary 1 with the indicator of its algorithm 1: samples beyond the trust region do
 /// not count.
 #[test]

@@ -5,7 +5,8 @@
 //! to wait for.
 //!
 //! As the paper has it the surrogate is clipped pessimistically. Its advantages are standardised,
-//! as its authors' are, so the excess is divided by the same deviation: (J_C - d) / (L sigma_C).
+//! as its authors' are, so the excess is divided by the same deviation: (J_C - d) / (L sigma_C),
+//! `sigma_C` at least `advantage_floor`: where nothing costs anything, its advantages are noise.
 //! (The paper's (1 - gamma)(J_C - d) is the excess of discounted costs a step; budgets here are on
 //! sums, whose excess a step is that over the L steps that episodes have on average.) The released
 //! code uses the plain ratio, the excess per step beside standardised advantages, and kappa 1, which leaves
@@ -41,7 +42,7 @@ impl P3o {
 
     /// The penalty of one constraint from the advantages of its cost, in raw units.
     fn penalty(&self, heads: &Heads, advantages: &[f32], signal: &Signal) -> Loss {
-        let (advantages, deviation) = standardised_by(advantages, 0.0);
+        let (advantages, deviation) = standardised_by(advantages, self.settings.advantage_floor);
         let expected = if self.clipped {
             let surrogate = heads.mean([&heads.ratio], |row, [ratio]| {
                 (ratio * advantages[row])

@@ -214,13 +214,8 @@ pub const METRICS: &[Metric] = &[
         "learning.auxiliary_labels",
         "The same of the predicted groups of things. 2.40 is a guess.",
     ),
-    metric("loss", "", "all but TRPO, TRPOLag, TRPOPID and CPO", "The whole loss."),
-    metric(
-        "gradient_norm",
-        "",
-        "all but TRPO, TRPOLag, TRPOPID and CPO",
-        "Norm of its gradient before it is cut.",
-    ),
+    metric("loss", "", "", "The whole loss; of TRPO, TRPOLag, TRPOPID and CPO the critics'."),
+    metric("gradient_norm", "", "", "Norm of its gradient before it is cut."),
     metric(
         "epochs",
         "",

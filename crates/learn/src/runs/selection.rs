@@ -4,8 +4,11 @@
 //! from say little about a single checkpoint. So it is evaluated now and then on episodes of their
 //! own, always the same ones, so that candidates are compared on equal terms. When the run is over,
 //! the candidates that kept their budgets are confirmed on further episodes, the one of the highest
-//! return first, and the first that keeps them there too is closed on a third set, which had no
-//! part in the choice. A candidate that fails there gives way to the next one, with new episodes.
+//! return first, and the first that keeps them there too is closed on a third set. A candidate that
+//! fails there gives way to the next one, with new episodes: so a closing within the budget is, of
+//! policies at the very budget, slightly too good. (Of five candidates whose true cost is 51 of 50,
+//! with a deviation of 20 and 100 episodes, one comes out within in 44 % of runs, the first alone in
+//! 31 %.) What the last policy shows, and *surely within*, have no such part in a choice.
 //! The last policy is closed as well: it is what a run is without any choice. Where it is the
 //! selected one, its closing is that of both.
 //!
@@ -38,7 +41,7 @@ pub struct Candidate {
     /// It keeps its budgets by its confirmation at the level shared out.
     #[serde(default)]
     pub surely_within: bool,
-    /// Episodes that had no part in the choice, played when the run was over.
+    /// Episodes played when the run was over. A candidate that is over its budgets there gives way.
     pub closing: Option<Evaluation>,
 }
 

@@ -319,6 +319,7 @@ impl Session {
         let lag = self.learner.version.saturating_sub(rollout.oldest_version());
         self.means.add("policy_lag", lag as f64);
         if lag > self.config.sampling.max_policy_lag {
+            self.watch.thrown_away();
             warn(format!(
                 "a rollout was {lag} updates old and was thrown away; raise the policy lag allowed, or use --sync"
             ));

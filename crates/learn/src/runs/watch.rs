@@ -165,6 +165,11 @@ impl Watch {
         self.fresh = 0;
     }
 
+    /// Notes that a rollout was thrown away: the next one that is learned from counts for it too.
+    pub fn thrown_away(&mut self) {
+        self.waited.iter_mut().for_each(|waited| *waited += 1);
+    }
+
     /// New episodes that have a constraint.
     fn fresh_under(&self, index: usize) -> usize {
         let new = self.recent.iter().rev().take(self.fresh);

@@ -217,6 +217,11 @@ fn episodes_are_new_once() {
     watch.learned();
     watch.add(&episode(2.0, 0.0), &config.constraints).unwrap();
     assert_eq!(fresh(&watch), (23.0, 2.0, 1.0));
+    // Episodes of a rollout that is thrown away count as new in the next.
+    let mut lagged = watch.clone();
+    lagged.thrown_away();
+    lagged.add(&episode(4.0, 0.0), &config.constraints).unwrap();
+    assert_eq!(fresh(&lagged), (21.5, 3.0, 2.0));
     // The released code's moments know no new ones.
     let each = TrainConfig {
         algorithm_settings: crate::config::AlgorithmConfig {
