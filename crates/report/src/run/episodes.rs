@@ -33,8 +33,8 @@ pub struct EpisodeResult {
     pub seed: Option<u64>,
 }
 
-/// The episodes of a later `hasard eval` that are of a run's own task, each seed once; a line says
-/// how many of a file are not.
+/// The episodes that are of a run's own task, or of one of its several, each seed of a task once; a
+/// line says how many of a file are not.
 pub fn own_episodes(
     episodes: Vec<EpisodeResult>,
     config: &Config,
@@ -44,7 +44,7 @@ pub fn own_episodes(
     let all = episodes.len();
     let mut seen = HashSet::new();
     let own = |one: &EpisodeResult| {
-        (one.env.is_empty() || one.env == config.env)
+        (one.env.is_empty() || config.env.split(',').any(|task| task.trim() == one.env))
             && one
                 .rules
                 .as_deref()
@@ -53,7 +53,7 @@ pub fn own_episodes(
     };
     let mut kept: Vec<EpisodeResult> = episodes.into_iter().filter(own).collect();
     let others = all - kept.len();
-    kept.retain(|one| one.seed.is_none_or(|seed| seen.insert(seed)));
+    kept.retain(|one| one.seed.is_none_or(|seed| seen.insert((one.env.clone(), seed))));
     let again = all - others - kept.len();
     for (count, what) in [
         (others, "of another environment or other rules than the run's"),

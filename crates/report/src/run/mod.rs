@@ -22,6 +22,7 @@ pub use episodes::{EpisodeResult, read_episode_lines};
 pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
 pub use own::{OwnTasks, default_budget};
+use selected::has_selected;
 pub use selected::{Evaluation, Selected, read_selected};
 
 use crate::curve::interpolate;
@@ -93,22 +94,26 @@ impl Run {
                 Vec::new()
             }
         };
+        let frames = rows.last().map_or(0.0, |row: &Row| row.frames);
+        let selected = read_selected(path, frames, warnings);
+        // Those of a selection that does not count are of another policy too.
+        let refused = selected.is_none() && has_selected(path);
         let mut evaluation = Vec::new();
         // Episodes of the closing evaluation are the run's own; those of a later `hasard eval`
         // count where it kept none.
         for beginning in ["closing", "eval"] {
             for file in sorted_files(path) {
                 let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-                if evaluation.is_empty() && name.starts_with(beginning) && name.ends_with(".jsonl")
+                let counts = beginning == "eval" || !refused;
+                if counts
+                    && evaluation.is_empty()
+                    && name.starts_with(beginning)
+                    && name.ends_with(".jsonl")
                 {
                     match read_text(&file) {
                         Ok(text) => {
                             let read = read_episode_lines(&text, &file, warnings);
-                            evaluation.extend(if beginning == "eval" {
-                                own_episodes(read, &config, &file, warnings)
-                            } else {
-                                read
-                            });
+                            evaluation.extend(own_episodes(read, &config, &file, warnings));
                         }
                         Err(warning) => warnings.push(warning),
                     }
@@ -127,8 +132,6 @@ impl Run {
         } else {
             Vec::new()
         };
-        let frames = rows.last().map_or(0.0, |row: &Row| row.frames);
-        let selected = read_selected(path, frames, warnings);
         Ok(Run {
             path: path.to_owned(),
             config,

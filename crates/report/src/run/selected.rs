@@ -13,7 +13,7 @@ const FILES: [&str; 2] = ["selected.json", "hand_out.json"];
 pub struct Selected {
     /// Frames after which it was taken.
     pub frames: f64,
-    /// Episodes that had no part in the choice, played when the run was over.
+    /// Episodes played when the run was over.
     pub closing: Option<Evaluation>,
     /// The same of the run's last policy.
     pub last: Option<Evaluation>,
@@ -46,6 +46,11 @@ impl Evaluation {
     }
 }
 
+/// Whether the run says which checkpoint it selected, rightly or not.
+pub(super) fn has_selected(run: &Path) -> bool {
+    FILES.iter().any(|name| run.join(name).is_file())
+}
+
 /// Reads the file of a run directory, if there is one; of a damaged one `warnings` says so, and of
 /// one that was written before the run went on to `frames`: it is of another policy.
 pub fn read_selected(run: &Path, frames: f64, warnings: &mut Vec<Warning>) -> Option<Selected> {
@@ -69,6 +74,9 @@ pub fn read_selected(run: &Path, frames: f64, warnings: &mut Vec<Warning>) -> Op
 
 fn understand(text: &str) -> Option<Selected> {
     let value: Value = serde_json::from_str(text).ok()?;
+    if has_negative_width(&value) {
+        return None;
+    }
     let evaluation = |keys: &[&str]| keys.iter().find_map(|key| evaluation(value.get(key)?));
     Some(Selected {
         frames: value.get("frames")?.as_f64()?,
@@ -76,6 +84,18 @@ fn understand(text: &str) -> Option<Selected> {
         last: evaluation(&["last"]),
         closed_at: value.get("last").and_then(|last| last.get("frames")?.as_f64()),
     })
+}
+
+/// Whether an interval somewhere in it ends before its mean.
+fn has_negative_width(value: &Value) -> bool {
+    let negative = |width: &Value| width.as_f64().is_some_and(|width| width < 0.0);
+    match value {
+        Value::Object(fields) => fields
+            .iter()
+            .any(|(name, one)| name == "half_width" && negative(one) || has_negative_width(one)),
+        Value::Array(items) => items.iter().any(has_negative_width),
+        _ => false,
+    }
 }
 
 fn evaluation(value: &Value) -> Option<Evaluation> {

@@ -18,17 +18,20 @@ const THRESHOLDS: usize = 24;
 /// Scores of an algorithm on a level: a list of seeds for each environment.
 type Strata = Vec<Vec<f64>>;
 
+/// An algorithm on a level: its place, its name, its normalised returns and feasible scores.
+type Scored = (usize, String, Strata, Strata);
+
 pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
     let settings = main_groups(groups);
     let mut blocks = Vec::new();
     for (setting, members) in &settings {
-        let mut rows = Vec::new();
+        let (mut rows, mut of_some) = (Vec::new(), Vec::new());
         let mut later = Vec::new();
         for level in distinct(members, |group| group.config().level) {
             let here: Vec<&Group> =
                 members.iter().copied().filter(|group| group.config().level == level).collect();
             let environments = distinct(&here, |group| group.config().env.clone());
-            let mut algorithms: Vec<(usize, String, Strata, Strata)> = Vec::new();
+            let mut scored: Vec<Scored> = Vec::new();
             for (order, algo) in distinct(&here, |group| {
                 (algorithm_order(&group.config().algo), group.config().algo.clone())
             }) {
@@ -48,8 +51,22 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
                 let (returns, feasible) =
                     (strata(|score| score.normalised), strata(|score| score.feasible));
                 if returns.iter().any(|seeds| !seeds.is_empty()) {
-                    rows.push(row(level, order, &algo, &returns, &feasible));
-                    algorithms.push((order, algo, returns, feasible));
+                    scored.push((order, algo, returns, feasible));
+                }
+            }
+            // A mean over easy environments is no rank among means over all of them.
+            let mut algorithms: Vec<Scored> = Vec::new();
+            for (index, places) in environment_sets(&scored).into_iter().enumerate() {
+                let beside: Vec<Scored> =
+                    scored.iter().filter_map(|one| within(one, &places)).collect();
+                let table = beside.iter().map(|one| row(level, one)).collect::<Vec<_>>();
+                if index == 0 {
+                    rows.extend(table);
+                    algorithms = beside;
+                } else {
+                    let names: Vec<&str> =
+                        places.iter().map(|&place| &*environments[place]).collect();
+                    of_some.push((format!("{setting}; {} alone", names.join(", ")), table));
                 }
             }
             if algorithms.is_empty() {
@@ -75,12 +92,10 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
                 "environments",
             ];
             let heads = heads.map(String::from).to_vec();
-            blocks.push(Block::Table(Table {
-                caption: setting.clone(),
-                heads,
-                rows,
-                ..Table::default()
-            }));
+            for (caption, rows) in [(setting.clone(), rows)].into_iter().chain(of_some) {
+                let table = Table { caption, heads: heads.clone(), rows, ..Table::default() };
+                blocks.push(Block::Table(table));
+            }
             blocks.append(&mut later);
         }
     }
@@ -92,7 +107,8 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
                 "Over all seeds and environments of a level: inter-quartile mean (IQM) of the feasible score; IQM and optimality gap (how far \
                  below 1 on average) of the normalised return, in which a random policy is 0 and PPO is 1, both measured here. Intervals: 95 % of \
                  {RESAMPLES} bootstrap samples that draw seeds within each environment (stratified), from a fixed random stream; of two or \
-                 three seeds an environment they are too narrow. There are none where an environment has a single seed."
+                 three seeds an environment they are too narrow. There are none where an environment has a single seed. Algorithms that were run \
+                 in some of the environments alone stand in a table of these, beside the others there."
             ),
             "The normalised return takes no notice of costs, the feasible score counts seeds above their budget as 0. Profiles: the \
              share of seeds above each score. Probability of improvement: that a seed of the row's algorithm has a higher feasible score \
@@ -103,11 +119,34 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
     }
 }
 
-fn row(level: u32, order: usize, algo: &str, returns: &Strata, feasible: &Strata) -> Vec<Cell> {
+/// The sets of environments that the algorithms have scores in, by their places: the largest first.
+fn environment_sets(algorithms: &[Scored]) -> Vec<Vec<usize>> {
+    let mut sets: Vec<Vec<usize>> = algorithms.iter().map(|one| places(one)).collect();
+    sets.sort_by(|a, b| b.len().cmp(&a.len()).then(a.cmp(b)));
+    sets.dedup();
+    sets
+}
+
+/// The places of the environments that an algorithm has scores in.
+fn places((_, _, returns, _): &Scored) -> Vec<usize> {
+    (0..returns.len()).filter(|&place| !returns[place].is_empty()).collect()
+}
+
+/// An algorithm in these environments alone; `None` where it has no scores in one of them.
+fn within(one: &Scored, here: &[usize]) -> Option<Scored> {
+    let own = places(one);
+    let strata = |of: &Strata| here.iter().map(|&place| of[place].clone()).collect();
+    let (order, name, returns, feasible) = one;
+    here.iter()
+        .all(|place| own.contains(place))
+        .then(|| (*order, name.clone(), strata(returns), strata(feasible)))
+}
+
+fn row(level: u32, (order, algo, returns, feasible): &Scored) -> Vec<Cell> {
     let iqm = aggregate(returns, interquartile_mean);
     vec![
         Cell::number(f64::from(level)).with_text(level.to_string()),
-        Cell { sort: Some(order as f64), ..Cell::text(algo) },
+        Cell { sort: Some(*order as f64), ..Cell::text(algo) },
         cell(aggregate(feasible, interquartile_mean)),
         cell(iqm),
         cell(aggregate(returns, |samples| optimality_gap(samples, 1.0))),
@@ -132,8 +171,8 @@ fn cell(estimate: Option<Aggregate>) -> Cell {
 }
 
 /// Performance profiles of normalised return and of feasible score, each with its bootstrap band.
-fn profiles(algorithms: &[(usize, String, Strata, Strata)], file: &str, level: u32) -> Figure {
-    let panel = |title: &str, axis: &str, of: fn(&(usize, String, Strata, Strata)) -> &Strata| {
+fn profiles(algorithms: &[Scored], file: &str, level: u32) -> Figure {
+    let panel = |title: &str, axis: &str, of: fn(&Scored) -> &Strata| {
         let series = algorithms.iter().map(|one| Series {
             name: one.1.clone(),
             ink: Ink::Series(one.0),
@@ -181,7 +220,7 @@ fn profile(strata: &Strata) -> Curve {
 }
 
 /// Probability of improvement of each algorithm over each other.
-fn improvement(algorithms: &[(usize, String, Strata, Strata)], level: u32) -> Table {
+fn improvement(algorithms: &[Scored], level: u32) -> Table {
     let mut heads = vec!["P(row > column)".to_owned()];
     heads.extend(algorithms.iter().map(|one| one.1.clone()));
     let rows = algorithms.iter().map(|one| {

@@ -61,8 +61,13 @@ impl<'a> Baselines<'a> {
             )
         };
         let own = task(group.config());
+        // What was trained on other levels or tasks too says nothing of what PPO reaches in this one.
+        let alone = |config: &Config| {
+            !["curriculum", "tasks"].iter().any(|key| config.options.contains_key(*key))
+        };
         let same = self.groups.iter().filter(|one| {
-            one.config().algo.eq_ignore_ascii_case("PPO") && task(one.config()) == own
+            let config = one.config();
+            config.algo.eq_ignore_ascii_case("PPO") && task(config) == own && alone(config)
         });
         let usual = |one: &Group| !one.config().options.contains_key("observation");
         let longest = same.max_by(|a, b| {

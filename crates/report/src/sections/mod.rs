@@ -115,11 +115,39 @@ fn main_groups(groups: &[Group]) -> Vec<(String, Vec<&Group>)> {
             settings.entry(setting(group)).or_default().push(group);
         }
     }
-    let mut settings: Vec<_> = settings.into_iter().collect();
+    let mut settings: Vec<_> = settings.into_iter().flat_map(told_apart).collect();
     let longest =
         |members: &[&Group]| members.iter().map(|group| group.frames_span().1).fold(0.0, f64::max);
     settings.sort_by(|a, b| longest(&b.1).total_cmp(&longest(&a.1)));
     settings
+}
+
+/// A table has a cell for an algorithm in an environment. Where experiments of a setting differ in
+/// what the setting does not show, frames that are rounded alike or one of two usual budgets, the
+/// further ones get a table each that says so.
+fn told_apart((setting, members): (String, Vec<&Group>)) -> Vec<(String, Vec<&Group>)> {
+    let cell = |group: &Group| {
+        let config = group.config();
+        (config.env.clone(), config.algo.to_ascii_lowercase())
+    };
+    let mut first: Vec<&Group> = Vec::new();
+    let mut apart: BTreeMap<String, Vec<&Group>> = BTreeMap::new();
+    for group in members {
+        let Some(there) = first.iter().find(|one| cell(one) == cell(group)) else {
+            first.push(group);
+            continue;
+        };
+        let (own, other) = (group.config(), there.config());
+        let mut name = setting.clone();
+        if let Some(frames) = own.frames.filter(|_| own.frames != other.frames) {
+            name += &format!(", exactly {frames}");
+        }
+        if own.safety_budget != other.safety_budget {
+            name += &format!(", budget {}", own.safety_budget);
+        }
+        apart.entry(name).or_default().push(group);
+    }
+    [(setting, first)].into_iter().chain(apart).collect()
 }
 
 /// Everything that an experiment was run under, for people.

@@ -37,8 +37,8 @@ pub(super) fn section(groups: &[Group]) -> Section {
         slug: "selected".into(),
         title: "Selected checkpoints".into(),
         text: vec![
-            "Each run selects the best checkpoint that keeps its budget in evaluations; here it plays episodes that neither training \
-             nor that selection has seen. ± is half the 95 % interval over episodes, `up to` its upper end; green is within the budget \
+            "Each run selects the best checkpoint that keeps its budget in evaluations; here it plays its closing episodes, \
+             which training has not seen; one that is over its budget in them has given way to the next. ± is half the 95 % interval over episodes, `up to` its upper end; green is within the budget \
              by the mean, on green ground by the upper end too. `over budget` is the share of episodes above the budget, `worst tenth` the \
              mean cost of the costliest tenth of episodes. In the rows of means ± is over seeds."
                 .into(),

@@ -1,0 +1,188 @@
+//! Folders less tidy than a campaign's: runs that went on, experiments that print alike, files of
+//! other runs. Nothing of them may stand in a table under another's name.
+
+mod synthetic;
+
+use hasard_report::{Written, write_report};
+use std::path::{Path, PathBuf};
+use synthetic::{Folder, Synthetic};
+
+const ENV: &str = "RemedyRushLevel1-v0";
+
+/// A run whose training ends at a return of 30 and a cost of 9.
+fn run(folder: &Folder, name: &str, env: &str, algo: &str, frames: f64, options: &str) -> PathBuf {
+    let path = folder.0.join("runs").join(name);
+    Synthetic { env, algo, seed: 1, frames, reports: 20, options, end: (30.0, 9.0, 0.0) }
+        .write(&path);
+    path
+}
+
+/// What a run says of its selected and its last policy: a return, at a cost of 4 ± 0.5.
+fn close(run: &Path, earned: f64, frames: f64, half_width: f64) {
+    let estimate = |mean: f64, half: f64| format!("{{\"mean\":{mean},\"half_width\":{half}}}");
+    let all = format!(
+        "\"episodes\":200,\"episode_return\":{},\"cost\":{},\"length\":{}",
+        estimate(earned, 0.1),
+        estimate(4.0, half_width),
+        estimate(525.0, 0.0)
+    );
+    let text = format!(
+        "{{\"frames\":{frames},\"closing\":{{{all}}},\"last\":{{\"frames\":{frames},{all}}}}}"
+    );
+    std::fs::write(run.join("selected.json"), text).unwrap();
+}
+
+fn episodes(run: &Path, file: &str, lines: &[(&str, u64, f64)]) {
+    let line = |(env, seed, earned): &(&str, u64, f64)| {
+        format!(
+            "{{\"env\":\"{env}\",\"seed\":{seed},\"rules\":\"tables\",\"return\":{earned},\"cost\":1,\"length\":525}}\n"
+        )
+    };
+    std::fs::write(run.join(file), lines.iter().map(line).collect::<String>()).unwrap();
+}
+
+/// Random play that returns 1, 2 and 3 in an environment.
+fn chance(folder: &Folder, env: &str) {
+    let file = format!("random-{env}-tables.jsonl");
+    episodes(&folder.0.join("runs"), &file, &[(env, 1, 1.0), (env, 2, 2.0), (env, 3, 3.0)]);
+}
+
+fn report(folder: &Folder) -> (Written, String, Vec<String>) {
+    let out = folder.0.join("out");
+    let written = write_report(&[folder.0.join("runs")], &out, "Untidy").unwrap();
+    let text = std::fs::read_to_string(out.join("report.md")).unwrap();
+    let csv = std::fs::read_to_string(out.join("runs.csv")).unwrap();
+    (written, text, csv.lines().skip(1).map(String::from).collect())
+}
+
+fn problems(written: &Written) -> String {
+    written.warnings.iter().map(|one| format!("{}\n", one.problem)).collect()
+}
+
+/// The episodes of a policy that the run has left behind are not those of the run.
+#[test]
+fn a_run_that_went_on_is_not_judged_by_what_closed_it_before() {
+    let folder = Folder::new("went-on");
+    let path = run(&folder, "one", ENV, "PPOPID", 3e6, "");
+    episodes(&path, "closing_episodes.jsonl", &[(ENV, 1, 5.0), (ENV, 2, 5.0)]);
+    close(&path, 5.0, 3e6, 0.5);
+    let (_, _, rows) = report(&folder);
+    assert!(rows[0].contains(",last policy,5,"), "{rows:?}");
+    close(&path, 5.0, 2e6, 0.5);
+    let (written, text, rows) = report(&folder);
+    assert!(problems(&written).contains("the run went on to 3000000"), "{}", problems(&written));
+    assert!(rows[0].contains(",end of training,"), "{rows:?}");
+    assert!(!text.contains("5.00"), "{text}");
+}
+
+/// A curriculum's or a mixture's PPO says nothing of what PPO reaches in the level alone.
+#[test]
+fn the_scale_is_of_ppo_on_the_task_alone() {
+    let folder = Folder::new("scale");
+    for (name, algo, frames, options, earned) in [
+        ("ppo", "PPO", 1e6, "", 12.0),
+        ("pid", "PPOPID", 1e6, "", 7.0),
+        ("curriculum", "PPO", 9e6, ",\"curriculum\":[3,2,1]", 300.0),
+    ] {
+        close(&run(&folder, name, ENV, algo, frames, options), earned, frames, 0.5);
+    }
+    chance(&folder, ENV);
+    let (_, _, rows) = report(&folder);
+    let pid = rows.iter().find(|row| row.contains(",PPOPID,")).unwrap();
+    assert!(pid.ends_with(",last policy,7,4,4.5,0.5,0.5"), "{pid}");
+}
+
+/// Frames that are rounded alike, and the two usual budgets of Armament Burden under `released`.
+#[test]
+fn experiments_that_print_alike_all_have_a_table() {
+    let folder = Folder::new("alike");
+    for (name, frames, earned) in [("a", 2_000_000.0, 41.0), ("b", 2_002_944.0, 43.0)] {
+        close(&run(&folder, name, ENV, "PPO", frames, ""), earned, frames, 0.5);
+    }
+    let burden = "ArmamentBurdenLevel1-v0";
+    for (name, budget, earned) in [("c", 50, 45.0), ("d", 5, 47.0)] {
+        let options = format!(",\"rules\":\"released\",\"safety_budget\":{budget}");
+        let path = run(&folder, name, burden, "PPOLag", 1e6, &options);
+        // The key that the helper writes comes first, and the last of two counts.
+        let text = std::fs::read_to_string(path.join("config.json")).unwrap();
+        std::fs::write(path.join("config.json"), text.replace("\"rules\":\"tables\",", ""))
+            .unwrap();
+        close(&path, earned, 1e6, 0.5);
+    }
+    let (_, text, _) = report(&folder);
+    let main = text.split("## Results").nth(1).unwrap().split("\n## ").next().unwrap();
+    for earned in ["41.00", "43.00", "45.00", "47.00"] {
+        assert!(main.contains(earned), "{earned} is missing: {main}");
+    }
+    assert!(
+        main.contains("2M frames, exactly 2000000;") && main.contains("1M frames, budget 50;"),
+        "{main}"
+    );
+}
+
+/// Each task of a mixture has its own episodes; those of a third are nobody's.
+#[test]
+fn episodes_of_several_tasks_count_by_task() {
+    let folder = Folder::new("tasks");
+    let other = "VolcanicVentureLevel1-v0";
+    let path = run(&folder, "both", &format!("{ENV},{other}"), "PPOPID", 1e6, "");
+    let third = "DetonatorsDilemmaLevel1-v0";
+    let all =
+        [(ENV, 1, 10.0), (ENV, 2, 12.0), (other, 1, 20.0), (other, 2, 22.0), (third, 1, 99.0)];
+    episodes(&path, "eval.jsonl", &all);
+    let (written, _, rows) = report(&folder);
+    assert!(
+        problems(&written).starts_with("1 of 5 episodes are of another environment"),
+        "{}",
+        problems(&written)
+    );
+    for (env, earned) in [(ENV, 11), (other, 21)] {
+        let row = rows.iter().find(|row| row.contains(&format!(",{env},"))).unwrap();
+        assert!(row.contains(&format!(",selected checkpoint,{earned},1,")), "{row}");
+    }
+}
+
+#[test]
+fn closing_episodes_of_another_run_and_spoiled_intervals_count_for_nothing() {
+    let folder = Folder::new("spoiled");
+    let path = run(&folder, "one", ENV, "PPOPID", 1e6, "");
+    let other = "VolcanicVentureLevel1-v0";
+    let lines = [(ENV, 1, 10.0), (ENV, 2, 12.0), (ENV, 2, 12.0), (other, 3, 99.0)];
+    episodes(&path, "closing_episodes.jsonl", &lines);
+    let (written, _, rows) = report(&folder);
+    assert!(rows[0].contains(",selected checkpoint,11,1,"), "{rows:?}");
+    assert_eq!(written.warnings.len(), 2, "{}", problems(&written));
+    close(&path, 10.0, 1e6, -3.0);
+    let (written, _, rows) = report(&folder);
+    assert!(problems(&written).contains("does not say which checkpoint"), "{}", problems(&written));
+    assert!(rows[0].contains(",end of training,"), "{rows:?}");
+}
+
+/// An algorithm that was run in one environment of two is not ranked among means over both.
+#[test]
+fn means_over_environments_are_over_the_same_ones() {
+    let folder = Folder::new("over");
+    let other = "VolcanicVentureLevel1-v0";
+    for (env, algo, earned) in [
+        (ENV, "PPO", 12.0),
+        (other, "PPO", 12.0),
+        (ENV, "PPOPID", 7.0),
+        (other, "PPOPID", 4.0),
+        (ENV, "CUP", 9.0),
+    ] {
+        close(&run(&folder, &format!("{env}{algo}"), env, algo, 1e6, ""), earned, 1e6, 0.5);
+    }
+    [ENV, other].iter().for_each(|env| chance(&folder, env));
+    let (_, text, _) = report(&folder);
+    let over = text.split("## Over environments").nth(1).unwrap().split("\n## ").next().unwrap();
+    let (both, alone) = over.split_once("RemedyRushLevel1-v0 alone").expect(over);
+    // 0.5 and 0.2 of the way from chance to PPO.
+    assert!(
+        both.contains("| 1 | PPOPID | 0.35 (n=2) | 0.35 (n=2) |") && !both.contains("| CUP |"),
+        "{both}"
+    );
+    assert!(
+        alone.contains("| 1 | PPOPID | 0.50 (n=1) |") && alone.contains("| 1 | CUP | 0.70 (n=1) |"),
+        "{alone}"
+    );
+}
