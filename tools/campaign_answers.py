@@ -20,12 +20,12 @@ NO_RUNS = ("open", "no runs", set())
 ONE_SEED = "open: one seed has no interval"
 
 
-def answer(strata, statistic, words, more=""):
-    """What a statistic that is positive where the hypothesis holds says of it, and in which words."""
+def answer(strata, statistic, words, more="", of_strata=None):
+    """What a statistic that is positive where the hypothesis holds says of it, and in which words; of_strata gives another interval."""
     words = f"{words} {statistic(strata):.2f}"
     if min(map(len, strata.values())) < 2:
         return ONE_SEED, words + more
-    low, high = interval(strata, statistic)
+    low, high = of_strata(strata) if of_strata else interval(strata, statistic)
     state = "holds" if low > 0 else "the contrary holds" if high < 0 else "not decided"
     return state, f"{words}, {low:.2f} to {high:.2f}{more}"
 
@@ -55,7 +55,14 @@ def beside(campaign, pairs, words):
     strata, left_out, seeds = scored(campaign, lists)
     if not strata:
         return ("open", f"no scale for {', '.join(left_out)}", seeds) if left_out else NO_RUNS
-    return *answer(strata, difference, words, without(left_out)), seeds
+    # A bootstrap of a few seeds of one environment would be too narrow.
+    alone = len({env for _, env in strata}) == 1
+    return *answer(strata, difference, words, without(left_out), sides_apart if alone else None), seeds
+
+
+def sides_apart(strata):
+    """Of one environment: 95 % interval of the first side's mean less the second's, by Student's t."""
+    return difference_of_means(*(values for _, values in sorted(strata.items(), reverse=True)))
 
 
 def level(campaign, number):

@@ -38,6 +38,9 @@ class Run:
         self.cost, self.cost_high = cost["mean"], float(row["judged_cost_high"])
         self.cost_low = cost["bootstrap"][0] if cost["bootstrap"] else cost["mean"] - cost["half_width"]
         self.within = self.cost_high <= self.budget
+        # What a campaign does not vary, and what an algorithm learns by in an environment.
+        self.terms = {"rules": env["rules"], "preset": config.get("preset"), "frames": config["frames"], "frame_skip": env.get("frame_skip", 4)}
+        self.learning = config.get("learning", {})
 
     def normalised(self, scale):
         """Its return, where random play's is 0 and PPO's is 1."""
@@ -60,12 +63,24 @@ class Campaign:
         if "judged_cost_high" not in rows[0]:
             raise SystemExit(f"{hasard} is older than this script; build it again")
         self.runs = [Run(row) for row in rows if row["judged_by"] == "last policy"]
+        self.refuse_others(root)
         self.budget = {run.env: run.budget for run in self.runs if run.algorithm == "PPO" and not run.hard}
         self.random = {}
         for path in Path(root).rglob("random-*.jsonl"):
             episodes = [json.loads(line) for line in path.read_text().splitlines()]
             episodes = [one for one in episodes if "return" in one]
             self.random[path.stem.removeprefix("random-")] = episodes
+
+    def refuse_others(self, root):
+        """Ends the program where runs of another study lie among a campaign's: their means would be nobody's."""
+        for run in self.runs:
+            first = self.runs[0]
+            if run.terms != first.terms:
+                raise SystemExit(f"{root}: has runs under {first.terms} and under {run.terms}; leave one kind there")
+            like = next(one for one in self.runs if (one.algorithm, one.env) == (run.algorithm, run.env))
+            # Settings that came since are not in older files, and have no effect there.
+            if any(like.learning.get(name, value) != value for name, value in run.learning.items()):
+                raise SystemExit(f"{root}: {run.algorithm} on {run.env} has runs of several `learning` settings; leave one kind there")
 
     def of(self, algorithm, env, **wanted):
         """The seeds of an experiment; of the default task but for what is wanted."""
@@ -74,7 +89,10 @@ class Campaign:
         if wanted["hard"]:
             del wanted["budget"]  # A hard constraint has a budget of its own.
         here = (run for run in self.runs if run.algorithm == algorithm and run.env == env)
-        return [run for run in here if all(getattr(run, name) == value for name, value in wanted.items())]
+        found = [run for run in here if all(getattr(run, name) == value for name, value in wanted.items())]
+        if len({run.seed for run in found}) < len(found):
+            raise SystemExit(f"{algorithm} on {env}: a seed is there twice under {wanted}; leave one of its runs there")
+        return found
 
     def chance(self, env, hard=False):
         """Random play's returns and costs, an episode each."""

@@ -190,8 +190,9 @@ def campaign(folder, hasard, earned, **env):
 @pytest.mark.parametrize(
     ("earned", "state", "difference"),
     [
-        ({"PPOPID": [9.0, 8.0, 10.0], "PPOLag": [4.0, 5.0, 3.0]}, "holds", "0.50"),
-        ({"PPOPID": [4.0, 5.0, 3.0], "PPOLag": [9.0, 8.0, 10.0]}, "the contrary holds", "-0.50"),
+        # Student's t: each side has a half-width of 0.2484, as there is one environment.
+        ({"PPOPID": [9.0, 8.0, 10.0], "PPOLag": [4.0, 5.0, 3.0]}, "holds", "0.50, 0.15 to 0.85"),
+        ({"PPOPID": [4.0, 5.0, 3.0], "PPOLag": [9.0, 8.0, 10.0]}, "the contrary holds", "-0.50, -0.85 to -0.15"),
         ({"PPOPID": [4.0, 9.0, 3.0], "PPOLag": [9.0, 3.0, 4.0]}, "not decided", "0.00"),
         ({"PPOPID": [9.0], "PPOLag": [4.0]}, "open: one seed has no interval", "0.50"),
     ],
@@ -239,6 +240,18 @@ def test_a_seed_that_is_not_whole_moves_no_answer(tmp_path, hasard):
     # A fourth seed of PPO would halve its mean, and of PPOPID raise its own.
     after = answers.h1(campaign(tmp_path / "part", hasard, {**earned, "PPO": [12.0] * 3 + [-12.0], "PPOPID": [9.0, 8.0, 10.0, 90.0]}))
     assert before == after
+
+
+def test_runs_of_another_study_and_a_seed_twice_end_the_tools(tmp_path, hasard):
+    folder = tmp_path / "runs"
+    campaign(folder, hasard, {"PPOPID": [9.0, 8.0]})
+    config = folder / "RemedyRushLevel1-v0/PPOPID/0/seed1/config.json"
+    text = config.read_text()
+    # The report itself takes longer runs for another experiment, and one of them alone for a seed.
+    for old, new, words in (('"frames": 1000', '"frames": 12000', "12000"), ('"paper"', '"tables"', "tables"), ('"seed": 1', '"seed": 0, "x": 1', "a seed is there twice")):
+        config.write_text(text.replace(old, new))
+        with pytest.raises(SystemExit, match=words):
+            tool("campaign_answers").h1(tool("campaign_runs").Campaign(folder, hasard))
 
 
 def test_intervals_of_means_are_student_s():
