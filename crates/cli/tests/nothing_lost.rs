@@ -131,7 +131,14 @@ fn a_sweep_does_not_take_a_run_of_other_settings_for_its_own() {
     let folder = Folder::new("sweep_settings");
     folder.file("s.toml", sweep("").as_bytes());
     folder.ok("sweep s.toml");
-    folder.ok("sweep s.toml");
+    let (said, noted) = folder.both("sweep s.toml");
+    assert!(said.contains("0 finished, 1 had been finished before"), "{said}");
+    assert!(!noted.contains("more frames"), "{noted}");
+    // A longer run counts, and is named: its schedules were made for its own length.
+    folder.file("s.toml", sweep("").replace("frames = 64", "frames = 32").as_bytes());
+    let (said, noted) = folder.both("sweep s.toml");
+    assert!(said.contains("0 finished, 1 had been finished before"), "{said}");
+    assert!(noted.contains("1 of 1 runs were made for more frames"), "{noted}");
     folder.file("s.toml", sweep("learning.gamma = 0.5\n").as_bytes());
     let said = folder.refused("sweep s.toml");
     assert!(said.contains("learning.gamma = 0.97") && said.contains("asks for 0.5"), "{said}");

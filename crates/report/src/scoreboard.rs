@@ -21,6 +21,10 @@ pub struct Entry {
     pub name: String,
     /// The algorithm that trained it.
     pub algorithm: String,
+    /// What it sees: `rgb`, `rgb+depth`, `segmented` or `grey`.
+    pub sees: String,
+    /// Its action space: `simplified` or `full`.
+    pub acts: String,
     /// Frames of its training.
     pub frames: f64,
     /// Mean return and half-width of its 95 % interval.
@@ -130,6 +134,8 @@ fn section(mut entries: Vec<Entry>) -> Section {
         vec![
             Cell { title: one.how.clone(), ..Cell::text(&one.name) },
             Cell::text(&one.algorithm),
+            Cell::text(&one.sees),
+            Cell::text(&one.acts),
             Cell { sort: Some(one.frames), ..Cell::text(frames(one.frames)) },
             spread(one.returns),
             Cell { mark: Mark::of(one.kept()), ..spread(one.cost) },
@@ -143,6 +149,8 @@ fn section(mut entries: Vec<Entry>) -> Section {
     let heads = [
         "agent",
         "algorithm",
+        "sees",
+        "actions",
         "frames",
         "return",
         "cost",
@@ -168,6 +176,8 @@ mod tests {
             hard: false,
             name: name.into(),
             algorithm: "PPOPID".into(),
+            sees: "rgb".into(),
+            acts: "simplified".into(),
             frames: 1e7,
             returns: (returns, 1.0),
             cost: (cost, cost_high - cost),

@@ -24,11 +24,12 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
                 continue;
             }
         };
-        if claim.episodes < LISTED_EPISODES {
+        if !LISTED_EPISODES.contains(&claim.episodes) {
+            let listed = LISTED_EPISODES.map(|number| number.to_string()).join(", ");
             refused.push((
                 name,
                 format!(
-                    "it has {} episodes; a scoreboard lists claims of {LISTED_EPISODES} and more",
+                    "it has {} episodes; a scoreboard lists claims of one of {listed}",
                     claim.episodes
                 ),
             ));
@@ -38,7 +39,10 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
             Ok(Verdict::Holds(measured)) => {
                 let (evaluation, budget) = (&measured.evaluation, measured.budget);
                 let tails = evaluation.constraints.first().map(|one| one.tails).unwrap_or_default();
+                let env = &measured.config.env;
                 entries.push(Entry {
+                    sees: env.observation.clone(),
+                    acts: if env.full_actions { "full" } else { "simplified" }.into(),
                     environment: claim.environment,
                     rules: claim.rules,
                     hard: claim.hard,

@@ -21,8 +21,10 @@ use crate::runs::evaluate::{Evaluation, play};
 /// Seed of the first episode of every claim. Trainings and evaluations draw theirs elsewhere, and
 /// nobody can choose lucky ones.
 pub const FIRST_SEED: u64 = 9_000_000;
-/// Fewest episodes of a claim that a scoreboard lists.
-pub const LISTED_EPISODES: u32 = 200;
+/// How many episodes the claims of a scoreboard have. Of any number that one likes one could choose
+/// the number that comes out best: a policy whose cost is the very budget is surely within it in 1.5 %
+/// of claims of 200 episodes, and in 22 % where the best number up to 10,000 is chosen.
+pub const LISTED_EPISODES: [u32; 3] = [200, 1_000, 10_000];
 /// Most episodes of a claim.
 pub const MOST_EPISODES: u32 = 10_000;
 /// Layout of the file.

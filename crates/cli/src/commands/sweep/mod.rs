@@ -48,6 +48,9 @@ pub fn run(args: &SweepArgs) -> Outcome {
         );
     }
     pairs.iter().try_for_each(|(job, config)| fits(job, config))?;
+    if !args.json {
+        name_longer(&pairs);
+    }
     if args.dry_run {
         return list(args, &pairs, sweep.parallel);
     }
@@ -85,6 +88,26 @@ fn fits(job: &Job, config: &TrainConfig) -> Outcome {
             "{}: was trained with {name} = {was}, the sweep asks for {wanted}; choose another `out`, or move that run away",
             job.directory.display()
         ))),
+    }
+}
+
+/// Says of which runs that are there already the schedules were made for more frames than are asked
+/// for: they count as finished, and are not what the sweep alone would make.
+fn name_longer(pairs: &[(Job, TrainConfig)]) {
+    let longer: Vec<(&Job, u64)> = pairs
+        .iter()
+        .filter_map(|(job, config)| {
+            let found = read_config(&job.directory).ok()?;
+            (found.frames > config.frames).then_some((job, found.frames))
+        })
+        .collect();
+    if let Some((job, frames)) = longer.first() {
+        note!(
+            "hasard: {} of {} runs were made for more frames than this sweep asks for, and count as finished; {} for {frames}. Another `out` makes them anew",
+            longer.len(),
+            pairs.len(),
+            job.directory.display()
+        );
     }
 }
 
