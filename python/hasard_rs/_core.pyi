@@ -8,7 +8,7 @@ from typing_extensions import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "check_scenario", "describe", "event_names", "follow", "frame_size", "ids", "main", "published_stats", "read_scenario", "register_scenario", "train"]
+__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "check_scenario", "checkpoint_of", "describe", "event_names", "follow", "frame_size", "ids", "main", "published_stats", "read_scenario", "register_scenario", "train"]
 
 __version__: str
 
@@ -144,6 +144,7 @@ class TrainedAgent:
     @property
     def observation_shape(self) -> tuple[int, int, int]: ...
 
+def checkpoint_of(run: str | os.PathLike[str], best: bool) -> str | os.PathLike[str] | None: ...
 def frame_size(name: str, resolution: str | Sequence[int]) -> tuple[int, int]: ...
 def check_scenario(text: str) -> list[tuple[int, int, bool, str]]: ...
 def ids() -> list[str]: ...

@@ -107,6 +107,8 @@ def read(given: dict[str, Any], *, vector: bool) -> Arguments:
             warnings.warn(f"{name} has no effect here", DeprecationWarning, stacklevel=4)
         else:
             known = [*_WORLD, *own, *(_VECTOR if vector else [])]
+            if name in known:
+                raise TypeError(f"argument '{name}' is not to be chosen here; leave it out")
             near = difflib.get_close_matches(name, known, 1, 0.5)
             hint = f"; did you mean '{near[0]}'?" if near else ""
             raise TypeError(f"unexpected keyword argument '{name}'{hint}")
@@ -143,6 +145,8 @@ def _check(arguments: Arguments) -> None:
     one_of("action_format", ACTION_FORMATS)
     one_of("render_mode", (None, *RENDER_MODES))
     one_of("infos", ("cost", "full", "events"))
+    if not isinstance(arguments.env_stats, (bool, np.bool_)):
+        raise InvalidOption(f"env_stats cannot be {arguments.env_stats!r}; it must be True or False")
     if arguments.infos == "events":
         arguments.world["events"] = True
     bins = arguments.delta_bins

@@ -16,13 +16,11 @@ from hasard_rs import _core
 def main(words: list[str] | None = None) -> int:
     """Runs the program with these words (the command line's, if None). Returns its exit code: 0 fine, 1 a negative result, 2 bad input."""
     words = sys.argv[1:] if words is None else words
-    if words[:1] == ["sweep"] and "--on" in words:
+    if words[:1] == ["sweep"] and _has(words, "--on"):
         from hasard_rs.clusters import sweep_on
 
-        at = words.index("--on")
-        place = words[at + 1] if at + 1 < len(words) else ""
-        return sweep_on(place, [*words[:at], *words[at + 2 :]])
-    if words[:1] == ["train"] and ("--on" in words or "--workers" in words):
+        return sweep_on(*_taken(words, "--on"))
+    if words[:1] == ["train"] and (_has(words, "--on") or _has(words, "--workers")):
         return train_on(words[1:])
     # The program ends at Ctrl-C, or with a checkpoint where it trains, whatever Python would do.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -62,6 +60,10 @@ def train_on(words: list[str]) -> int:
     except KeyboardInterrupt:
         return 130
     return 0
+
+
+def _has(words: list[str], flag: str) -> bool:
+    return any(word == flag or word.startswith(f"{flag}=") for word in words)
 
 
 def _taken(words: list[str], flag: str) -> tuple[str, list[str]]:

@@ -28,7 +28,8 @@ class HasardEnv(CMDP):
         env_id: a bare id, such as `RemedyRushLevel1-v0`.
         num_envs: lanes.
         device: of the tensors.
-        arguments: see `help(hasard_rs.VectorEnv)`; OmniSafe hands on `env_cfgs`.
+        arguments: see `help(hasard_rs.VectorEnv)`; OmniSafe hands on `env_cfgs`. Of those that its Evaluator gives, width and height are the
+            size of pictures, and camera_id and camera_name have no effect.
 
     Raises:
         What `hasard_rs.make_vec` raises.
@@ -42,6 +43,9 @@ class HasardEnv(CMDP):
     def __init__(self, env_id: str, num_envs: int = 1, device: Any = "cpu", **arguments: Any) -> None:
         super().__init__(env_id)
         self._device = torch.device(device)
+        width, height, *_ = (arguments.pop(name, None) for name in ("width", "height", "camera_id", "camera_name"))
+        if arguments.get("render_mode") and width and height:
+            arguments.setdefault("render_resolution", (width, height))
         given = over({"resolution": "64x48", "observation": "grey"}, arguments)
         self.envs = hasard_rs.make_vec(env_id, num_envs, autoreset_mode="SameStep", action_format="box", **given)
         self.envs._given.without("hasard_rs.omnisafe", "infos", "env_stats")
@@ -104,8 +108,9 @@ class HasardEnv(CMDP):
         return torch.as_tensor(self._action_space.sample(), dtype=torch.float32, device=self._device)
 
     def render(self) -> Any:
-        """Returns what `VectorEnv.render` does."""
-        return self.envs.render()
+        """Returns a picture uint8 [height, width, 3], of several environments one each; None without a render mode."""
+        pictures = self.envs.render()
+        return pictures[0] if pictures and self._num_envs == 1 else pictures
 
     def close(self) -> None:
         """Lets the worlds go."""

@@ -38,19 +38,32 @@ class DoomEnv(Env):
         if given.get("render_mode") == "human":
             # A window would need pygame; Gymnasium's make adds one to the frames if it is asked for a human mode.
             given["render_mode"] = "rgb_array"
-        super().__init__(**given)
+        # They are counted in any case, for `get_statistics`.
+        self._reports = bool(given["env_stats"])
+        super().__init__(**{**given, "env_stats": True})
         self.game_res = given.get("resolution", given.get("size"))
         self._statistics: dict[str, float] = {}
         self._cost = 0.0
 
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> Any:
+        """Starts an episode; seed and options as for `Env.reset`. Returns and raises what it does."""
+        observation, info = super().reset(seed=seed, options=options)
+        self._note(info)
+        return observation, info
+
     def step(self, action: Any) -> Any:
         """Holds an action, a tuple of parts. Returns and raises what `Env.step` does; `info["env_stats"]` has the published names, floats."""
         result = super().step(action)
-        self._statistics, self._cost = result[4]["env_stats"], float(result[4]["cost"])
+        self._note(result[4])
         return result
 
+    def _note(self, info: dict[str, Any]) -> None:
+        self._statistics, self._cost = info["env_stats"], float(info["cost"])
+        if not self._reports:
+            del info["env_stats"]
+
     def calculate_cost(self) -> float:
-        """Returns the cost of the last step."""
+        """Returns the cost of the last step, 0 after a reset."""
         return self._cost
 
     def get_statistics(self, mode: str = "") -> dict[str, float]:

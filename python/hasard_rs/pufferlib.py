@@ -17,7 +17,10 @@ from hasard_rs.spaces import action_format  # noqa: E402
 
 
 class HasardPuffer(pufferlib.PufferEnv):  # type: ignore[name-defined,misc]
-    """Worlds in SAME_STEP mode over PufferLib's own arrays; costs of the step are in `costs` (float32 [n]), infos come at ends.
+    """Worlds in SAME_STEP mode over PufferLib's own arrays; infos come at ends.
+
+    Costs of the step are in `costs` (float32 [n]): an attribute of the process that steps the worlds, which is another one than the learner's
+    under PufferLib's Multiprocessing. The costs of episodes are in the infos in any case.
 
     Args:
         env_id: one of `hasard_rs.ids()`.
@@ -29,8 +32,7 @@ class HasardPuffer(pufferlib.PufferEnv):  # type: ignore[name-defined,misc]
     """
 
     def __init__(self, env_id: str, num_envs: int = 1, *, num_threads: int | None = None, buf: Any = None, seed: int = 0, **arguments: Any) -> None:
-        spec = hasard_rs.spec(env_id)
-        given = _arguments.read({"layout": "chw", **arguments, "scenario": spec.scenario, "level": spec.level}, vector=True)
+        given = _arguments.read({"layout": "chw", **arguments, **hasard_rs._task(env_id)}, vector=True)
         given.without("hasard_rs.pufferlib", "action_format", "render_mode", "render_resolution", "infos", "env_stats")
         self.worlds = hasard_rs.Worlds(given.env_id, num_envs, num_threads=num_threads, **given.world)
         self._format = action_format("multi_discrete", self.worlds.nvec, self.worlds.num_deltas, given.delta_bins)
@@ -48,11 +50,16 @@ class HasardPuffer(pufferlib.PufferEnv):  # type: ignore[name-defined,misc]
             terminated=self.terminals,
             truncated=self.truncations,
         )
-        self._seed = seed
+        self._seed: int | None = seed
 
     def reset(self, seed: int | None = None) -> tuple[np.ndarray, list[dict[str, Any]]]:
-        """Starts episodes; an int seed s seeds lane i with s + i. Returns observations uint8 [n, ...], PufferLib's array, and no infos."""
-        self.worlds.reset(self._seed if seed is None else seed)
+        """Starts episodes. Returns observations uint8 [n, ...], PufferLib's array, and no infos.
+
+        An int seed s seeds lane i with s * num_envs + i: PufferLib gives neighbours neighbouring seeds, and none plays another's episodes. None
+        goes on with the lanes' streams, after a first reset by the constructor's seed.
+        """
+        seed, self._seed = self._seed if seed is None else seed, None
+        self.worlds.reset(None if seed is None else seed * self.num_agents)
         return self.observations, []
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:

@@ -18,7 +18,7 @@ import hasard_rs  # noqa: E402
 from hasard_rs.ray_training import train  # noqa: E402, F401
 
 Rollout = dict[str, Any]
-"""observations [T + 1, n, ...] uint8, actions, rewards, costs, cost_terms, terminated, truncated [T, n], episodes, version."""
+"""observations [T + 1, n, ...] uint8, actions, rewards, costs, cost_terms, terminated, truncated [T, n], final_observations, episodes, version."""
 
 
 class Sampler:
@@ -44,7 +44,8 @@ class Sampler:
         """Sets the policy of the samples to come.
 
         Args:
-            policy: a function of observations (uint8 [n, ...]) that gives actions, integers [n, parts]; None draws at random.
+            policy: a function of observations (uint8 [n, ...]) that gives actions, integers [n, parts], with full_actions a pair of these and
+                deltas, float32 [n, 2] in [-1, 1]; None draws at random.
             version: a number that the rollouts will carry.
         """
         self.policy, self.version = policy, version
@@ -57,29 +58,59 @@ class Sampler:
 
         Returns:
             A rollout: "observations" uint8 [T + 1, n, ...], "actions" int64 [T, n, parts], "rewards" and "costs" float32 [T, n], "cost_terms" float32
-            [T, n, k], "terminated" and "truncated" bool [T, n], "episodes" (a dict each), "version". Fresh contiguous arrays, which Ray's object
-            store takes without a copy.
+            [T, n, k], "terminated" and "truncated" bool [T, n], "episodes" (a dict each), "version"; with full_actions "deltas" float32
+            [T, n, 2]. Where an episode ends the next observation is the next episode's first: the last of the m that ended are
+            "final_observations" uint8 [m, ...], in "final_steps" and "final_lanes" int64 [m], to bootstrap from where time ended them. Fresh
+            contiguous arrays, which Ray's object store takes without a copy.
         """
         worlds, n = self.worlds, self.worlds.num_envs
         rollout: Rollout = {
             "observations": np.empty((steps + 1, n, *worlds.observation_shape), np.uint8),
             "actions": np.empty((steps, n, len(worlds.nvec)), np.int64),
             "cost_terms": np.empty((steps, n, len(worlds.cost_terms)), np.float32),
+            "final_observations": [],
+            "final_steps": [],
+            "final_lanes": [],
             "episodes": [],
             "version": self.version,
         }
         for name, dtype in (("rewards", np.float32), ("costs", np.float32), ("terminated", np.bool_), ("truncated", np.bool_)):
             rollout[name] = np.empty((steps, n), dtype)
+        if worlds.num_deltas:
+            rollout["deltas"] = np.empty((steps, n, worlds.num_deltas), np.float32)
         for step in range(steps):
             rollout["observations"][step] = self.observations
-            actions = self.rng.integers(0, worlds.nvec, (n, len(worlds.nvec))) if self.policy is None else self.policy(self.observations)
-            batch = worlds.step(actions)
+            actions, deltas = self._act()
+            batch = worlds.step(actions, deltas)
             rollout["actions"][step], self.observations = actions, batch.observations
+            if deltas is not None:
+                rollout["deltas"][step] = deltas
+            rollout["final_observations"] += list(batch.final_observations.copy())
+            rollout["final_lanes"] += batch.final_lanes.tolist()
+            rollout["final_steps"] += [step] * len(batch.final_lanes)
             for name in ("rewards", "costs", "cost_terms", "terminated", "truncated"):
                 rollout[name][step] = getattr(batch, name)
             rollout["episodes"] += batch.episodes
         rollout["observations"][steps] = self.observations
+        lasts = rollout["final_observations"]
+        rollout["final_observations"] = np.stack(lasts) if lasts else np.empty((0, *worlds.observation_shape), np.uint8)
+        for name in ("final_steps", "final_lanes"):
+            rollout[name] = np.array(rollout[name], np.int64)
         return rollout
+
+    def _act(self) -> tuple[Any, Any]:
+        """Actions of all lanes, and deltas or None."""
+        worlds, n = self.worlds, self.worlds.num_envs
+        if self.policy is None:
+            actions = self.rng.integers(0, worlds.nvec, (n, len(worlds.nvec)))
+            deltas = self.rng.uniform(-1.0, 1.0, (n, worlds.num_deltas)).astype(np.float32) if worlds.num_deltas else None
+            return actions, deltas
+        given = self.policy(self.observations)
+        if not worlds.num_deltas:
+            return given, None
+        if not isinstance(given, tuple) or len(given) != 2:
+            raise TypeError("with full_actions a policy must give a pair, actions and deltas")
+        return given
 
 
 def samplers(env_id: str, count: int, lanes: int, *, seed: int = 0, num_cpus: float = 1, options: Any = None, **arguments: Any) -> list[Any]:

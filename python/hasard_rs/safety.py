@@ -28,6 +28,16 @@ class SafetyEnv(gymnasium.Env[np.ndarray, Any]):
         self.action_space, self.observation_space = self.env.action_space, self.env.observation_space
         self.metadata, self.render_mode, self.spec = self.env.metadata, self.env.render_mode, self.env.spec
 
+    @property
+    def safety_budget(self) -> float:
+        """Cost that an episode may have. Raises AttributeError for an environment without one."""
+        return float(self.env.get_wrapper_attr("safety_budget"))
+
+    @property
+    def max_episode_steps(self) -> int:
+        """Steps of an episode that only time ends. Raises AttributeError for an environment without a limit."""
+        return int(self.env.get_wrapper_attr("max_episode_steps"))
+
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         """Starts an episode; seed and options as for `Env.reset`. Returns the observation and its info, without "cost"."""
         observation, info = self.env.reset(seed=seed, options=options)
@@ -51,7 +61,8 @@ class SafetyEnv(gymnasium.Env[np.ndarray, Any]):
 class SafetyVectorEnv:
     """A batch of worlds in SAME_STEP mode whose `step` returns (observations, rewards, costs, terminateds, truncateds, infos).
 
-    Last observations are in `infos` under Gymnasium 0.28's names: `final_observation`, `_final_observation`, `final_info`, `_final_info`.
+    Last observations are in `infos` as `final_observation` and `_final_observation`, Gymnasium's names before 1.0; `final_info` is a dict of
+    columns, as Gymnasium 1 has it.
 
     Args:
         env_id: one of `hasard_rs.ids()`.

@@ -1,6 +1,8 @@
 """Sample-Factory 2: the published package's environment names and settings, as one batched multi-agent environment.
 
     python -m hasard_rs.sample_factory --env=remedy_rush --level=1 --batched_sampling=True --env_agents=16
+
+Lanes of one batch take the place of Sample-Factory's own environments: `--num_envs_per_worker` is `--worker_num_splits`, one a split.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ import gymnasium  # noqa: E402
 import torch  # noqa: E402
 
 import hasard_rs  # noqa: E402
+from hasard_rs.errors import InvalidOption  # noqa: E402
 from hasard_rs.infos import summary  # noqa: E402
 from hasard_rs.registry import Scenario  # noqa: E402
 from hasard_rs.spaces import action_format  # noqa: E402
@@ -46,31 +49,41 @@ class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
         self.action_space = self._format.space
 
     def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
-        """Starts episodes; an int seed s seeds lane i with s + i, options are none. Returns {"obs": uint8 [n, c, h, w]} and a dict a lane."""
-        batch = self.worlds.reset(seed)
-        return {"obs": torch.from_numpy(batch.observations)}, [{} for _ in range(self.num_agents)]
+        """Starts episodes; options are none. Returns {"obs": uint8 [n, c, h, w]} and no infos.
+
+        An int seed s seeds lane i with s * num_agents + i: Sample-Factory's environments have the seeds 0, 1, 2, ..., and none plays another's
+        episodes.
+        """
+        batch = self.worlds.reset(None if seed is None else seed * self.num_agents)
+        return {"obs": torch.from_numpy(batch.observations)}, {}
 
     def step(self, actions: Any) -> Any:
         """Steps every lane.
 
         Args:
-            actions: a tensor [n, parts]: choices, then deltas where there are any.
+            actions: a tensor [n, parts]: choices, then deltas where there are any; or a list of arrays, one a part, as Sample-Factory gives
+                actions that are not all discrete.
 
         Returns:
-            ({"obs": uint8 [n, c, h, w]}, rewards float32 [n], terminated, truncated bool [n], infos), tensors; infos is a dict a lane with "cost",
-            "num_frames" and, where an episode ended, "episode_extra_stats".
+            ({"obs": uint8 [n, c, h, w]}, rewards float32 [n], terminated, truncated bool [n], infos), tensors. Where episodes ended infos has
+            what they came to by name ("cost", each of its terms, statistics), float32 [n], 0 in the other lanes: Sample-Factory's summaries
+            take the lanes that are over.
 
         Raises:
             InvalidAction; ValueError for another shape. Nothing has moved then.
         """
-        rows = actions.cpu().numpy() if torch.is_tensor(actions) else np.asarray(actions)
+        if isinstance(actions, (list, tuple)):
+            rows = np.column_stack([np.asarray(part.cpu() if torch.is_tensor(part) else part).reshape(self.num_agents, -1) for part in actions])
+        else:
+            rows = actions.cpu().numpy() if torch.is_tensor(actions) else np.asarray(actions)
         groups = len(self.worlds.nvec)
         deltas = rows[:, groups:].astype(np.float32) if self.worlds.num_deltas else None
         batch = self.worlds.step(rows[:, :groups].astype(np.int64), deltas)
-        infos: list[dict[str, Any]] = [{"cost": cost, "num_frames": self.frame_skip} for cost in batch.costs.tolist()]
+        infos: dict[str, Any] = {}
         for episode in batch.episodes:
-            stats = summary(episode)
-            infos[episode["lane"]]["episode_extra_stats"] = {name: value for name, value in stats.items() if name != "seed"}
+            for name, value in summary(episode).items():
+                if name != "seed":
+                    infos.setdefault(name, torch.zeros(self.num_agents))[episode["lane"]] = float(value)
         ends = torch.from_numpy(batch.terminated), torch.from_numpy(batch.truncated)
         return {"obs": torch.from_numpy(batch.observations)}, torch.from_numpy(batch.rewards), *ends, infos
 
@@ -94,7 +107,14 @@ def make(full_env_name: str, cfg: Any = None, env_config: Any = None, render_mod
 
     Returns:
         A `HasardBatch`.
+
+    Raises:
+        InvalidOption for sampling that is not batched, or several environments a split, which could not report costs.
     """
+    if not getattr(cfg, "batched_sampling", True):
+        raise InvalidOption("the worlds are one batch: give --batched_sampling=True")
+    if getattr(cfg, "num_envs_per_worker", 1) > getattr(cfg, "worker_num_splits", 1):
+        raise InvalidOption("several environments a split report no costs: give --num_envs_per_worker as --worker_num_splits, and more --env_agents")
     arguments = {
         "hard_constraint": getattr(cfg, "constraint", "soft") == "hard",
         "resolution": (getattr(cfg, "res_w", 128), getattr(cfg, "res_h", 72)),
@@ -122,6 +142,8 @@ def add_arguments(parser: Any) -> None:
     parser.add_argument("--res_h", type=int, default=72)
     parser.add_argument("--all_actions", action="store_true")
     parser.add_argument("--env_agents", type=int, default=16, help="worlds of one batched environment")
+    # Sample-Factory's own default of 1 would be another task.
+    parser.set_defaults(env_frameskip=4)
 
 
 def main() -> int:

@@ -15,6 +15,7 @@ need("stable_baselines3", "sb3", "sb3")
 from stable_baselines3.common.vec_env import VecEnv as _VecEnv  # noqa: E402
 
 import hasard_rs  # noqa: E402
+from hasard_rs.errors import InvalidOption  # noqa: E402
 from hasard_rs.infos import summary  # noqa: E402
 
 
@@ -28,6 +29,9 @@ class VecEnv(_VecEnv):
     """
 
     def __init__(self, env_id: str, n_envs: int = 1, **arguments: Any) -> None:
+        for name in ("batch_size", "copy"):
+            if name in arguments:
+                raise InvalidOption(f"{name} cannot be had in hasard_rs.sb3, whose arrays are the learner's to keep; leave it out")
         # Channels first, so that no wrapper transposes every observation.
         self.envs = hasard_rs.make_vec(env_id, n_envs, **{"layout": "chw", **arguments}, autoreset_mode="SameStep").unwrapped
         self.envs._given.without("hasard_rs.sb3", "infos", "env_stats")
@@ -73,8 +77,10 @@ class VecEnv(_VecEnv):
         self.envs.close()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """Returns the attribute attr_name of the vector environment, once for each lane of indices."""
-        return [getattr(self.envs, attr_name)] * len(self._lanes(indices))
+        """Returns the attribute attr_name for each lane of indices, as `VectorEnv.call` has it; of methods the vector environment's own."""
+        own = getattr(self.envs, attr_name, None)
+        answers = [own] * self.num_envs if callable(own) else self.envs.call(attr_name)
+        return [answers[lane] for lane in self._lanes(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Sets the attribute attr_name, which all lanes share, to value, whatever indices are."""
@@ -103,7 +109,7 @@ def make_vec_env(env_id: str, n_envs: int = 1, seed: int | None = None, **argume
     Args:
         env_id: one of `hasard_rs.ids()`.
         n_envs: lanes.
-        seed: lane i's is seed + i; None: the operating system's.
+        seed: lane i's is seed + i; None: drawn from NumPy's global generator, as Stable-Baselines3 draws it.
         arguments: those of `help(hasard_rs.VectorEnv)`.
 
     Returns:

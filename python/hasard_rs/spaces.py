@@ -42,6 +42,10 @@ class ActionFormat:
         """Reads the actions of so many lanes. Returns rows; raises InvalidAction, TypeError or ValueError."""
         raise NotImplementedError
 
+    def masks(self, choices: np.ndarray) -> np.ndarray:
+        """Turns masks of the categorical parts' choices, bool [n, sum of nvec], into masks of the space's choices, bool [n, m]."""
+        return choices
+
     def _integers(self, given: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
         array = np.asarray(given)
         if array.dtype.kind not in "iub":
@@ -99,6 +103,9 @@ class MultiDiscrete(ActionFormat):
         self.parts = self.groups + deltas
         self.space = spaces.MultiDiscrete([*nvec, *[bins] * deltas])
 
+    def masks(self, choices: np.ndarray) -> np.ndarray:
+        return np.concatenate([choices, np.ones((len(choices), self.deltas * self.bins), np.bool_)], axis=1)
+
     def one(self, action: Any) -> Rows:
         return self._binned(self._integers(action, (self.parts,), "the action")[None])
 
@@ -114,6 +121,14 @@ class Discrete(ActionFormat):
         self.sizes = (*nvec, *[bins] * deltas)
         self.count = int(np.prod(self.sizes))
         self.space = spaces.Discrete(self.count)
+
+    def masks(self, choices: np.ndarray) -> np.ndarray:
+        parts = np.split(choices, np.cumsum(self.nvec)[:-1], axis=1)
+        bins = [np.ones((len(choices), self.bins), np.bool_)] * self.deltas
+        whole = np.ones((len(choices), 1), np.bool_)
+        for part in [*parts, *bins]:
+            whole = (whole[:, :, None] & part[:, None, :]).reshape(len(choices), -1)
+        return whole
 
     def one(self, action: Any) -> Rows:
         # NumPy's argmax and torch's item give 0-d arrays as well as arrays of one element.
@@ -143,6 +158,9 @@ class Tuple(ActionFormat):
         return self.many((*categorical, *continuous), 1)
 
     def many(self, actions: Any, lanes: int) -> Rows:
+        if isinstance(actions, np.ndarray) and actions.ndim > 1:
+            # An array of rows would be read by its columns where there are as many lanes as parts.
+            raise TypeError(f"actions must be a tuple of {self.groups + self.deltas} parts, each of {lanes} lanes, got an array {actions.shape}")
         self._count(actions)
         parts = [self._integers(_column(part, lanes), (lanes,), "each part of the actions") for part in actions[: self.groups]]
         if not self.deltas:

@@ -8,6 +8,7 @@ import numpy as np
 
 import hasard_rs
 from hasard_rs import arguments as _arguments
+from hasard_rs.errors import InvalidOption
 from hasard_rs.infos import Infos, row, summary
 from hasard_rs.spaces import action_format
 
@@ -27,8 +28,10 @@ class HasardVectorEnv:
     def __init__(self, env_id: str, num_envs: int, *, num_threads: int | None = None, **arguments: Any) -> None:
         spec = hasard_rs.spec(env_id)
         arguments = {"layout": "chw", "action_format": "discrete", **arguments}
-        given = _arguments.read({**arguments, "scenario": spec.scenario, "level": spec.level}, vector=True)
+        given = _arguments.read({**arguments, **hasard_rs._task(env_id)}, vector=True)
         given.without("hasard_rs.tianshou", "env_stats", "render_mode", "render_resolution")
+        if given.action_format in ("tuple", "dict"):
+            raise InvalidOption(f"action_format cannot be {given.action_format!r} in hasard_rs.tianshou, whose actions are one array")
         self.worlds = hasard_rs.Worlds(given.env_id, num_envs, num_threads=num_threads, autoreset_mode="Disabled", **given.world)
         self._format = action_format(given.action_format, self.worlds.nvec, self.worlds.num_deltas, given.delta_bins)
         self._infos = Infos(self.worlds, spec.scenario, given.infos, False)
@@ -96,9 +99,11 @@ class HasardVectorEnv:
         return infos
 
     def seed(self, seed: Any = None) -> list[Any]:
-        """Keeps the seed, an int or a list of one a lane, of the next reset. Returns it as a list."""
+        """Keeps the seed of the next reset, an int (lane i's is seed + i) or a list of one a lane. Returns one a lane."""
         self._seeds = seed
-        return [seed] if seed is None or isinstance(seed, int) else list(seed)
+        if seed is None:
+            return [None] * self.env_num
+        return [int(seed) + lane for lane in range(self.env_num)] if _arguments.is_number(seed) else list(seed)
 
     def render(self, **kwargs: Any) -> list[np.ndarray]:
         """Returns a picture a lane, uint8 [120, 160, 3]; kwargs are ignored."""

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from hasard_rs import _core
 from hasard_rs._extra import need
 from hasard_rs.errors import InvalidOption
 
@@ -161,11 +162,10 @@ def load(run: str | os.PathLike[str], *, best: bool = False) -> Model:
         A `Model`, on the CPU.
 
     Raises:
-        InvalidOption where no checkpoint was written.
+        InvalidOption where no checkpoint was written, or the best one is spoiled; of others the newest whole one counts.
     """
-    checkpoints = Path(run) / "checkpoints"
-    found = [*sorted(checkpoints.glob("frames_*")), *(sorted(checkpoints.glob("best_*")) if best else [])]
-    if not found:
+    checkpoint = _core.checkpoint_of(run, best)
+    if checkpoint is None:
         raise InvalidOption(f"{run}: no checkpoint was written there; give the directory of a run")
     settings = json.loads((Path(run) / "config.json").read_text())["network"]
-    return Model(read_weights(found[-1] / "weights.safetensors"), settings)
+    return Model(read_weights(Path(checkpoint) / "weights.safetensors"), settings)

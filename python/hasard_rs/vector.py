@@ -28,7 +28,9 @@ except ImportError:
     AutoresetMode = None  # type: ignore[assignment,misc]
     _Base = object  # type: ignore[assignment,misc]
 
-_CALLS = ("render", "position", "episode_seed", "state_hash")
+_CALLS = ("render", "position", "episode_seed", "state_hash", "action_masks")
+# Of all lanes at once: a call a lane would do them as often as there are lanes.
+_OF_ALL = ("reset", "step", "send", "recv", "save", "load", "close", "close_extras", "call", "get_attr", "set_attr")
 
 
 class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
@@ -79,6 +81,8 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         given = _arguments.read(arguments, vector=True)
         self._arguments = {**arguments, "num_envs": num_envs, "num_threads": num_threads, "batch_size": batch_size, "copy": copy}
         self._given = given
+        if isinstance(batch_size, bool) or not hasattr(batch_size, "__index__"):
+            raise InvalidOption(f"batch_size cannot be {batch_size!r}; it must be a whole number")
         if batch_size and (batch_size < 0 or num_envs % batch_size):
             raise InvalidOption(f"batch_size cannot be {batch_size}; it must divide num_envs ({num_envs}), or be 0 for all lanes")
         groups = num_envs // batch_size if batch_size else 1
@@ -373,7 +377,8 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         """Asks each lane.
 
         Args:
-            name: "render", "position" (int32 [2], map units), "episode_seed", "state_hash", or an attribute of this object.
+            name: "render", "position" (int32 [2], map units), "episode_seed", "state_hash", "action_masks" (bool, one for each choice of the
+                action space), or an attribute of this object.
             args: for an attribute that is called.
             kwargs: the same.
 
@@ -381,8 +386,10 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
             An answer a lane.
 
         Raises:
-            AttributeError for another name.
+            AttributeError for another name, and for what is of all lanes at once, such as "reset".
         """
+        if name in _OF_ALL:
+            raise AttributeError(f"'{name}' is of all lanes at once; call it on the batch")
         if name in _CALLS:
             self._wait()
         if name == "render":
@@ -393,6 +400,11 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
             return tuple(self._worlds.episode_seeds)
         if name == "state_hash":
             return tuple(self._worlds.state_hash(lane) for lane in range(self.num_envs))
+        if name == "action_masks":
+            return tuple(self._format.masks(self.action_masks))
+        if len(self.tasks) > 1 and name in ("safety_budget", "scenario_name", "level"):
+            value = getattr(self, name)
+            return tuple(value.tolist() if name == "safety_budget" else (value[task] for task in self.lane_tasks))
         if name.startswith("_") or not hasattr(self, name):
             raise AttributeError(f"'{name}' is none of {', '.join(_CALLS)}, nor an attribute of the environment")
         value = getattr(self, name)

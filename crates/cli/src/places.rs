@@ -62,9 +62,10 @@ fn gather(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) {
         .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()))
         .map(|entry| entry.path())
     {
+        let thrown_away = path.file_name().is_some_and(|name| name == hasard_report::run::TRASH);
         if path.join(SETTINGS).is_file() {
             found.push(path);
-        } else if depth > 1 {
+        } else if depth > 1 && !thrown_away {
             gather(&path, depth - 1, found);
         }
     }

@@ -88,6 +88,7 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("trace RemedyRushLevel1-v0", &["--actions"]),
         ("eval none", &["none"]),
         ("eval zoo:nobody", &["zoo:nobody", "zoo"]),
+        ("eval zoo:RemedyRushLevel1 --episodes 500 --worst 1 -o /proc/x/w.mp4", &["/proc/x"]),
         ("export-agent none", &["none"]),
         ("record binary.agent -o a.mp4", &["binary.agent", "export-agent"]),
         ("eval empty", &["empty"]),

@@ -8,8 +8,7 @@ use serde_json::Value;
 #[test]
 fn an_agents_best_moment_is_a_small_gif_and_the_same_twice() {
     let folder = Folder::new("highlights");
-    let line =
-        "highlights zoo:VolcanicVentureLevel1 --seconds 1 --episodes 2 --size 160x120 --json";
+    let line = "highlights zoo:VolcanicVentureLevel1 --seconds 1 --episodes 2 --seed 18446744073709551615 --size 160x120 --json";
     let said: Value = serde_json::from_str(&folder.ok(&format!("{line} -o a"))).unwrap();
     assert_eq!(said["file"], "a/volcanic_venture.gif");
     assert!(said["return"].as_f64().unwrap() > 5.0 && said["cost"].as_f64().unwrap() <= 50.0);
@@ -47,6 +46,10 @@ fn levels_stand_in_one_animation_and_mistakes_are_named() {
         ("highlights nothere", "no such run"),
         ("highlights zoo:RemedyRushLevel1 nothere --out films", "no such run"),
         ("highlights --size 1x1", "64x48"),
+        (
+            "highlights zoo:RemedyRushLevel1 zoo:RemedyRushLevel1 --out films",
+            "both of RemedyRushLevel1",
+        ),
     ] {
         let said = folder.refused(line);
         assert!(said.contains(why), "{line}: {said}");

@@ -4,8 +4,10 @@
 use crate::errors::INVALID_OPTION;
 use crate::pool::array;
 use hasard_envs::{Env, EnvOptions};
+use hasard_learn::error::LearnError;
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{TrainedPolicy, run_config};
+use hasard_learn::runs::checkpoint::{Loaded, Store};
 use hasard_learn::runs::evaluate::{Agent as Trained, Choice, Memory, Which};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
@@ -70,6 +72,21 @@ impl TrainedAgent {
     fn agent(&self) -> MutexGuard<'_, Trained> {
         self.agent.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
+}
+
+/// checkpoint_of(run, best) -> str or None
+///
+/// Returns the folder of the checkpoint that an agent of this `run` acts by: with `best` the
+/// selected one, else, and where none was ever judged, the newest whole one. Raises InvalidOption
+/// where the selected one is spoiled.
+#[pyfunction]
+pub fn checkpoint_of(py: Python<'_>, run: PathBuf, best: bool) -> PyResult<Option<PathBuf>> {
+    let store = Store::new(&run, 1);
+    if let Some(selected) = store.selected().filter(|_| best) {
+        let spoiled = |error: LearnError| INVALID_OPTION.error(py, error.to_string());
+        return Loaded::read(&selected).map_err(spoiled).map(|_| Some(selected));
+    }
+    Ok(store.all().into_iter().find(|path| Loaded::read(path).is_ok()))
 }
 
 #[pymethods]

@@ -51,6 +51,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<batch::Batch>()?;
     module.add_class::<agent::TrainedAgent>()?;
     module.add_class::<agent::AgentState>()?;
+    module.add_function(wrap_pyfunction!(agent::checkpoint_of, module)?)?;
     module.add_function(wrap_pyfunction!(program::main, module)?)?;
     module.add_function(wrap_pyfunction!(program::train, module)?)?;
     module.add_function(wrap_pyfunction!(program::follow, module)?)?;

@@ -399,7 +399,7 @@ impl Worlds {
     /// Args:
     ///     actions: integers [m, len(nvec)], a choice for each categorical part; any integer dtype
     ///         and strides, lists too.
-    ///     deltas: numbers [m, 2] in [-1, 1], where num_deltas is not 0; None otherwise.
+    ///     deltas: numbers [m, 2] in [-1, 1], where num_deltas is not 0; None: 0 each.
     ///     lanes: the m lanes to step, each once; None: all of them, in order.
     ///
     /// Returns:

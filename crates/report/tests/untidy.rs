@@ -186,3 +186,18 @@ fn means_over_environments_are_over_the_same_ones() {
         "{alone}"
     );
 }
+
+/// What `hasard serve --edit` has thrown away counts nowhere, at any depth; named itself, it does.
+#[test]
+fn runs_in_the_trash_count_nowhere() {
+    let folder = Folder::new("trash");
+    close(&run(&folder, "kept", ENV, "PPO", 1e6, ""), 12.0, 1e6, 0.5);
+    for name in [".trash/gone", "deeper/.trash/gone"] {
+        close(&run(&folder, name, ENV, "PPOPID", 1e6, ""), 99.0, 1e6, 0.5);
+    }
+    let (_, text, rows) = report(&folder);
+    assert!(rows.len() == 1 && !text.contains("99.00"), "{rows:?}");
+    let trash = folder.0.join("runs/.trash");
+    let written = write_report(&[trash], &folder.0.join("out2"), "Trash").unwrap();
+    assert_eq!(written.runs, 1);
+}

@@ -7,6 +7,8 @@ from typing import Any
 import gymnasium
 from gymnasium.utils import RecordConstructorArgs
 
+from hasard_rs.errors import InvalidOption
+
 
 class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     """Counts down what is left of the budget: a step that finds nothing left is rewarded with `unsafe_reward`.
@@ -24,6 +26,8 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     def __init__(
         self, env: gymnasium.Env[Any, Any], saute_gamma: float = 0.99, *, budget: float | None = None, unsafe_reward: float = -1.0
     ) -> None:
+        if not 0.0 < saute_gamma <= 1.0:
+            raise InvalidOption(f"saute_gamma cannot be {saute_gamma!r}; it must be above 0, at most 1")
         RecordConstructorArgs.__init__(self, saute_gamma=saute_gamma, budget=budget, unsafe_reward=unsafe_reward)
         gymnasium.Wrapper.__init__(self, env)
         steps = env.get_wrapper_attr("max_episode_steps")

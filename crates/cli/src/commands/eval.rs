@@ -14,10 +14,11 @@ use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config}
 use hasard_learn::runs::calibration::{calibrate, predictions};
 use hasard_learn::runs::evaluate::{Trace, play_traced};
 use hasard_learn::runs::session::MakeWorlds;
-use hasard_media::files::write_whole;
+use hasard_media::files::{WholeFile, is_special, write_whole};
 use hasard_play::Film;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
+use std::fs::metadata;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -48,6 +49,11 @@ pub fn run(args: &EvalArgs) -> Outcome {
         )));
     }
     let run = places::run(&args.run)?;
+    // A place that cannot be written ends it before the first episode, not after the last.
+    let written = film.map(|(_, out)| out).into_iter().chain(args.calibration.as_deref());
+    for path in written.filter(|path| !metadata(path).is_ok_and(|kind| is_special(&kind))) {
+        drop(WholeFile::create(path).map_err(Failure::bad)?);
+    }
     let mut config = run_config(&run).map_err(Failure::bad)?;
     let actions_of = args.rules.map(|rules| play_under(&mut config, rules.into())).transpose()?;
     let config = config;

@@ -113,6 +113,7 @@ pub fn run(args: &HighlightsArgs) -> Outcome {
     };
     // A name that is wrong ends it before the first film, not after.
     let agents = what.iter().map(|agent| places::run(agent)).collect::<Result<Vec<_>, _>>()?;
+    told_apart(&agents)?;
     std::fs::create_dir_all(&args.out).map_err(|error| {
         Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display()))
     })?;
@@ -120,6 +121,24 @@ pub fn run(args: &HighlightsArgs) -> Outcome {
         one(args, agent)?;
     }
     if args.levels { levels(args, &agents) } else { Ok(()) }
+}
+
+/// A film has the name of its environment: of two agents of one, the second's would take the place
+/// of the first's.
+fn told_apart(agents: &[PathBuf]) -> Outcome {
+    let mut seen: Vec<(String, &PathBuf)> = Vec::new();
+    for agent in agents {
+        let (env, _) = crate::environment_of_run(agent).map_err(Failure::bad)?;
+        if let Some((_, other)) = seen.iter().find(|(known, _)| *known == env) {
+            return Err(Failure::bad(format!(
+                "{} and {} are both of {env}, and their films would have one name; give each a run of its own with another --out",
+                other.display(),
+                agent.display()
+            )));
+        }
+        seen.push((env, agent));
+    }
+    Ok(())
 }
 
 /// The zoo's agents of level 1, by their names.
@@ -138,9 +157,9 @@ fn one(args: &HighlightsArgs, place: &Path) -> Outcome {
     let mut performance = Performance::of_run(place, &looks, Elsewhere::default(), args.seed)?;
     let mut ticker = Ticker::new(args.episodes.into(), "episodes");
     let mut best: Option<Played> = None;
-    for seed in args.seed..args.seed.saturating_add(args.episodes.into()) {
-        let played = act(&mut performance, seed)?;
-        ticker.at(seed - args.seed + 1);
+    for number in 0..u64::from(args.episodes) {
+        let played = act(&mut performance, args.seed.wrapping_add(number))?;
+        ticker.at(number + 1);
         let worth = |played: &Played| (played.within, played.sum().0);
         if best.as_ref().is_none_or(|best| worth(&played) > worth(best)) {
             best = Some(played);

@@ -94,6 +94,10 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
     Ok(found)
 }
 
+/// Where `hasard serve --edit` moves the runs that are thrown away. They count nowhere, unless the
+/// folder itself is named.
+pub const TRASH: &str = ".trash";
+
 fn look(folder: &Path, depth: usize, found: &mut Found) {
     if folder.join("config.json").is_file() {
         match Run::read(folder, &mut found.warnings) {
@@ -106,6 +110,9 @@ fn look(folder: &Path, depth: usize, found: &mut Found) {
         return;
     }
     for path in sorted_files(folder) {
+        if path.file_name().is_some_and(|name| name == TRASH) {
+            continue;
+        }
         if path.is_dir() {
             // A link could lead in a circle; the bound on depth ends it.
             look(&path, depth + 1, found);

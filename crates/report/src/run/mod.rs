@@ -16,7 +16,7 @@ mod task;
 pub use calibration::{Calibration, read_calibration};
 pub use config::{Config, FRAME_SKIP, SHOWN, scenario_and_level};
 pub use constraint::{Constraint, Kept};
-pub use discover::{Found, Origin, PlayerKey, discover};
+pub use discover::{Found, Origin, PlayerKey, TRASH, discover};
 use episodes::own_episodes;
 pub use episodes::{EpisodeResult, read_episode_lines};
 pub use heatmap::{HeatmapData, parse_heatmaps};

@@ -10,6 +10,7 @@ mod render;
 mod summary;
 
 use crate::escape::escape;
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 use render::{Links, render};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::{Component, Path, PathBuf};
@@ -128,14 +129,19 @@ impl Site {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let place = format!("films/{name}");
             let words = escape(&title_of(&name));
+            // A browser would end the name at a `#`.
+            let address = utf8_percent_encode(&name, NO_PART_OF_A_NAME);
             let shown = match path.extension().and_then(|it| it.to_str()) {
-                Some("gif" | "png") => format!("<img src=\"{}\" alt=\"{words}\">", escape(&name)),
-                Some("mp4") => format!(
-                    "<video controls loop muted playsinline src=\"{}\"></video>",
-                    escape(&name)
-                ),
+                Some("gif" | "png") => format!("<img src=\"{address}\" alt=\"{words}\">"),
+                Some("mp4") => {
+                    format!("<video controls loop muted playsinline src=\"{address}\"></video>")
+                }
                 _ => continue,
             };
+            if self.copied.contains(&place) {
+                let problem = "a film of this name is there already; give it another name";
+                return Err(format!("{}: {problem}", path.display()));
+            }
             let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
             self.write(&place, &bytes)?;
             self.copied.insert(place);
@@ -214,6 +220,10 @@ impl Site {
     }
 }
 
+/// What a file's name keeps of itself in an address.
+const NO_PART_OF_A_NAME: &AsciiSet =
+    &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~');
+
 /// `remedy_rush.gif` as words.
 fn title_of(name: &str) -> String {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem).replace(['_', '-'], " ");
@@ -251,6 +261,7 @@ struct Found<'a> {
 impl Links for Found<'_> {
     fn link(&mut self, target: &str) -> Option<String> {
         let (path, anchor) = target.split_once('#').map_or((target, None), |(p, a)| (p, Some(a)));
+        let path = &*percent_decode_str(path).decode_utf8_lossy();
         let folder = Path::new(self.page).parent().unwrap_or(Path::new(""));
         let Some(place) = normal(&folder.join(path)) else {
             self.links.insert(target.to_owned(), Kind::Lost);
