@@ -1,6 +1,6 @@
 //! Recorded episodes: the table of the best within the budget, downloads, films.
 
-use crate::answer::{aside, json_of, refusal};
+use crate::answer::{aside, json_of, long_job, refusal};
 use crate::shared::Shared;
 use axum::extract::{Query, State};
 use axum::http::{StatusCode, header};
@@ -124,19 +124,8 @@ pub(crate) async fn download(
         query.name
     };
     let bytes = if film {
-        let Ok(place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {
-            return Err(refusal(
-                StatusCode::SERVICE_UNAVAILABLE,
-                "films or reports are in the making; ask again in a moment",
-            ));
-        };
         let gif = kind == "image/gif";
-        aside(move || {
-            let bytes = filmed(&path, gif);
-            drop(place);
-            bytes
-        })
-        .await?
+        long_job(&shared.long_jobs, move || filmed(&path, gif)).await?
     } else {
         aside(move || std::fs::read(path).map_err(|error| error.to_string())).await?
     };

@@ -1,7 +1,7 @@
 //! The list of runs, their curves, heatmaps, maps and report.
 
 use super::asked::{Chosen, One, directory, on_catalogue};
-use crate::answer::{aside, json_of, refusal};
+use crate::answer::{aside, json_of, long_job, refusal};
 use crate::catalogue::files::read;
 use crate::shared::Shared;
 use axum::extract::{Query, State};
@@ -97,18 +97,12 @@ pub(crate) async fn report(
     State(shared): State<Arc<Shared>>,
     Query(query): Query<Chosen>,
 ) -> Result<Response, Response> {
-    let Ok(_place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {
-        return Err(refusal(
-            StatusCode::SERVICE_UNAVAILABLE,
-            "films or reports are in the making; ask again in a moment",
-        ));
-    };
     let ids = query.ids()?;
-    let paths = on_catalogue(shared, move |catalogue| {
+    let paths = on_catalogue(Arc::clone(&shared), move |catalogue| {
         ids.iter().filter_map(|id| catalogue.path(id)).collect::<Vec<_>>()
     })
     .await?;
-    let page = aside(move || {
+    let page = long_job(&shared.long_jobs, move || {
         static NUMBER: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
         let number = NUMBER.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let folder = std::env::temp_dir()

@@ -3,7 +3,7 @@
 use super::performer::{Performer, performer};
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
-use crate::answer::{aside, refusal};
+use crate::answer::{long_job, refusal};
 use crate::shared::Shared;
 use axum::extract::{Query, State};
 use axum::http::{StatusCode, header};
@@ -27,17 +27,8 @@ pub(crate) async fn film(
     query.check().map_err(|why| refusal(StatusCode::BAD_REQUEST, &why))?;
     let performer =
         performer(&shared, &query).await.map_err(|why| refusal(StatusCode::NOT_FOUND, &why))?;
-    let Ok(place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {
-        return Err(refusal(
-            StatusCode::SERVICE_UNAVAILABLE,
-            "films or reports are in the making; ask again in a moment",
-        ));
-    };
-    let made = aside(move || {
-        let made = filmed(&shared, &query, &performer);
-        drop(place);
-        made
-    });
+    let places = Arc::clone(&shared.long_jobs);
+    let made = long_job(&places, move || filmed(&shared, &query, &performer));
     let (name, bytes) =
         made.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
     let disposition = format!("attachment; filename=\"{name}\"");

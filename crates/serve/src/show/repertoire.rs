@@ -4,7 +4,7 @@
 use super::performer::{Performer, performer};
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
-use crate::answer::{aside, json_of, refusal};
+use crate::answer::{aside, json_of, long_job, refusal};
 use crate::shared::Shared;
 use axum::extract::{Query, State};
 use axum::http::StatusCode;
@@ -50,17 +50,8 @@ pub(crate) async fn episodes(
         });
         return Ok(json_of(&json!({ "source": "closing", "rows": rows.await? })));
     }
-    let Ok(place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {
-        return Err(refusal(
-            StatusCode::SERVICE_UNAVAILABLE,
-            "films or reports are in the making; ask again in a moment",
-        ));
-    };
-    let acted = aside(move || {
-        let rows = act(&shared, query, &performer, count.act);
-        drop(place);
-        rows
-    });
+    let places = Arc::clone(&shared.long_jobs);
+    let acted = long_job(&places, move || act(&shared, query, &performer, count.act));
     let rows = acted.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
     Ok(json_of(&json!({ "source": "acted", "rows": rows })))
 }
