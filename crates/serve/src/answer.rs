@@ -71,9 +71,8 @@ mod tests {
         let refused = runtime.block_on(long_job(&places, || ())).unwrap_err();
         assert_eq!(refused.status(), StatusCode::SERVICE_UNAVAILABLE);
         end.send(()).unwrap();
-        let given_back = async {
-            tokio::time::timeout(Duration::from_secs(20), places.acquire()).await.is_ok()
-        };
+        let given_back =
+            async { tokio::time::timeout(Duration::from_secs(20), places.acquire()).await.is_ok() };
         assert!(runtime.block_on(given_back));
     }
 }

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`Server`] | the socket, the routes, the thread pool |
 //! | `guard` | who may ask: Host, Origin, token; headers of every answer |
-//! | `door` | how many may ask: connections, and those that say nothing |
+//! | `door` | how many may ask: connections, and those that ask or take nothing |
 //! | `catalogue` | run directories found and read from where they were left off |
 //! | `stages` | stages built lately, shared by their viewers |
 //! | `shared` | what the routes share |

@@ -110,7 +110,7 @@ impl Server {
             .layer(DefaultBodyLimit::max(1024))
             .layer(axum::middleware::from_fn_with_state(Arc::clone(&self.shared), guard::guard))
             .with_state(Arc::clone(&self.shared));
-        self.runtime.block_on(async move { axum::serve(self.door, routes).await })
+        self.runtime.block_on(self.door.serve(routes))
     }
 }
 

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{folder, get, raw, serve, status, write_run};
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 use tungstenite::Message;
@@ -245,6 +245,39 @@ fn ten_thousand_sockets_do_not_lock_others_out_for_long() {
     }
     drop(open);
     assert_eq!(status(&get(address, "/", "")), 200);
+}
+
+/// A byte is no request, nor is an open connection after an answer: neither keeps its place.
+#[test]
+fn who_asks_for_nothing_more_is_shown_out() {
+    let address = serve(&folder("bytes"), Some("letmein12345"));
+    let keeps = |request: &str| {
+        let mut stream = TcpStream::connect(address).unwrap();
+        let _ = stream.write_all(request.as_bytes());
+        stream
+    };
+    let answered = format!("GET / HTTP/1.1\r\nHost: {address}\r\n\r\n");
+    // More than there are places, in two ways; the ones beyond are turned away.
+    let open: Vec<TcpStream> =
+        (0..600).map(|k| keeps(if k % 2 == 0 { "G" } else { &answered })).collect();
+    let begun = Instant::now();
+    while status(&try_get(address, "/api/runs")) != 401 {
+        assert!(begun.elapsed() < Duration::from_secs(60), "nobody is answered any more");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    // One byte after the other does not draw it out.
+    let mut slow = keeps("G");
+    slow.set_read_timeout(Some(Duration::from_millis(500))).unwrap();
+    let begun = Instant::now();
+    let over = |stream: &mut TcpStream| match stream.read(&mut [0; 64]) {
+        Ok(bytes) => bytes == 0,
+        Err(error) => !matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut),
+    };
+    while !over(&mut slow) {
+        assert!(begun.elapsed() < Duration::from_secs(60), "a byte at a time keeps a place");
+        let _ = slow.write_all(b"E");
+    }
+    drop(open);
 }
 
 /// As `get`, of a server that may turn one away: then nothing.
