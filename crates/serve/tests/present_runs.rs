@@ -118,3 +118,29 @@ fn pages_follow_runs_that_are_resumed_replaced_renamed_and_deleted() {
     );
     let _ = std::fs::remove_dir_all(folder);
 }
+
+/// To open a pipe that nobody writes into is to wait for ever.
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_a_files_place_is_passed_over() {
+    let folder = folder("present-pipes");
+    for name in ["metrics.jsonl", "heatmaps.jsonl", "selected.json", "notes.json", "lock"] {
+        write_run(&folder, name, 3);
+        let path = folder.join("runs").join(name).join(name);
+        let _ = std::fs::remove_file(&path);
+        assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+    }
+    let mut page = Page { address: serve(&folder, None), since: 0, runs: BTreeMap::new() };
+    page.wait("beside pipes", |runs| {
+        runs.len() == 5
+            && runs["metrics.jsonl"]["last"] == json!({})
+            && runs["lock"]["last"] != json!({})
+    });
+    for name in ["metrics.jsonl", "heatmaps.jsonl", "selected.json", "notes.json", "lock"] {
+        let id = page.id(name);
+        assert_eq!(ask(page.address, &format!("/api/run?id={id}"))["run"]["name"], name);
+        assert!(ask(page.address, &format!("/api/curves?runs={id}&columns=fps"))[&id].is_object());
+        assert!(ask(page.address, &format!("/api/heatmap?id={id}"))["error"].is_string());
+    }
+    let _ = std::fs::remove_dir_all(folder);
+}

@@ -2,12 +2,11 @@
 
 use super::columns::Columns;
 use super::evaluated::{self, Stamped};
-use super::files::{Stamp, at_once};
+use super::files::{Stamp, at_once, open};
 use super::notes::{self, Notes};
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::fs::File;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -335,7 +334,7 @@ fn folders_of_runs(top: &Path, folder: &Path, depth: usize, found: &mut Vec<Foun
 
 /// The last whole row of a file.
 fn last_row(path: &Path, bytes: u64) -> Option<Map<String, Value>> {
-    let mut file = File::open(path).ok()?;
+    let mut file = open(path).ok()?;
     file.seek(SeekFrom::Start(bytes.saturating_sub(TAIL))).ok()?;
     let mut tail = Vec::new();
     file.take(TAIL).read_to_end(&mut tail).ok()?;

@@ -6,7 +6,7 @@
 use super::asked::on_catalogue;
 use crate::answer::{aside, json_of, refusal};
 use crate::catalogue::Catalogue;
-use crate::catalogue::files::read;
+use crate::catalogue::files::{open, read};
 use crate::catalogue::notes::{FILE, TRASH, Words};
 use crate::shared::Shared;
 use axum::extract::State;
@@ -101,7 +101,7 @@ fn throw_away(path: &Path, name: &str, top: &Path) -> Result<Value, String> {
         ));
     }
     // A training holds this file.
-    let held = std::fs::File::open(path.join("lock"))
+    let held = open(&path.join("lock"))
         .is_ok_and(|file| matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock)));
     if held {
         return Err(format!("{name} is running; end its training first"));
