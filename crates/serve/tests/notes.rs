@@ -75,6 +75,34 @@ fn notes_are_kept_and_runs_thrown_away_only_by_name() {
     assert_eq!(runs(address).len(), 1);
 }
 
+/// What stands in the file by another hand is somebody's work.
+#[test]
+fn notes_of_another_hand_are_not_wiped() {
+    let folder = folder("notes-hand");
+    write_run(&folder, "one", 5);
+    let address = serve_edited(&folder);
+    let id = runs(address)[0]["id"].clone();
+    let file = folder.join("runs/one/notes.json");
+    let save = || post(address, &json!({ "id": id, "archived": true }), &own(address));
+    // A comma is missing; then no text at all.
+    let halves: [&[u8]; 2] = [b"{\"note\": \"long thoughts\"\n\"tags\": []}", &[0xff, 0xfe, b'{']];
+    for (half, said) in halves.into_iter().zip(["line 2 column", "is no readable text file"]) {
+        std::fs::write(&file, half).unwrap();
+        let answer = save();
+        assert_eq!(status(&answer), 422, "{answer}");
+        let why = body(&answer)["error"].as_str().unwrap().to_owned();
+        assert!(why.starts_with("one/notes.json: ") && why.contains(said), "{why}");
+        assert!(why.contains("move it away") && !why.contains('\n'), "{why}");
+        assert_eq!(std::fs::read(&file).unwrap(), half);
+    }
+    // What this page does not know stays beside what it changes.
+    std::fs::write(&file, r#"{"note":"mine","stars":5,"by":{"name":"Ada"}}"#).unwrap();
+    assert_eq!(status(&save()), 200);
+    let kept: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+    let wanted = json!({ "note": "mine", "tags": [], "archived": true, "stars": 5, "by": { "name": "Ada" } });
+    assert_eq!(kept, wanted);
+}
+
 #[test]
 fn nobody_else_writes() {
     let folder = folder("notes-others");

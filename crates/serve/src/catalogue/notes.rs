@@ -2,7 +2,8 @@
 
 use super::files::{Stamp, read};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The folder of runs that were thrown away.
@@ -20,6 +21,31 @@ pub(crate) struct Words {
     pub tags: Vec<String>,
     #[serde(default)]
     pub archived: bool,
+    /// What another program or a later version wrote beside them; it stays.
+    #[serde(flatten)]
+    pub others: Map<String, Value>,
+}
+
+impl Words {
+    /// Those of a run's folder; `name` is the run's. None are there where there is no file.
+    ///
+    /// # Errors
+    /// Where the file cannot be understood: what somebody wrote there must not be lost.
+    pub fn of(run: &Path, name: &str) -> Result<Words, String> {
+        let path = run.join(FILE);
+        if std::fs::symlink_metadata(&path).is_err_and(|error| error.kind() == ErrorKind::NotFound)
+        {
+            return Ok(Words::default());
+        }
+        let problem = match read(&path) {
+            Some(text) => match serde_json::from_str(&text) {
+                Ok(words) => return Ok(words),
+                Err(error) => error.to_string(),
+            },
+            None => "is no readable text file".to_owned(),
+        };
+        Err(format!("{name}/{FILE}: {problem}; mend this file or move it away, then save again"))
+    }
 }
 
 /// The notes of a run and the file that they were read from, as it was then.

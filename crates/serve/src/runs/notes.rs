@@ -6,7 +6,7 @@
 use super::asked::on_catalogue;
 use crate::answer::{aside, json_of, refusal};
 use crate::catalogue::Catalogue;
-use crate::catalogue::files::{open, read};
+use crate::catalogue::files::open;
 use crate::catalogue::notes::{FILE, TRASH, Words};
 use crate::shared::Shared;
 use axum::extract::State;
@@ -81,8 +81,7 @@ pub(crate) async fn edit(
         Some(_) => Err("give the name of the run to throw it away".to_owned()),
         None => {
             let file = path.join(FILE);
-            let words = read(&file).and_then(|text| serde_json::from_str(&text).ok());
-            let words = edit.changed(words.unwrap_or_default())?;
+            let words = edit.changed(Words::of(&path, &name)?)?;
             let text = serde_json::to_string_pretty(&words).map_err(|error| error.to_string())?;
             write_whole(&file, text.as_bytes()).map_err(|error| error.to_string())?;
             Ok(json!({ "notes": words }))
