@@ -119,6 +119,34 @@ fn pages_follow_runs_that_are_resumed_replaced_renamed_and_deleted() {
     let _ = std::fs::remove_dir_all(folder);
 }
 
+/// Rows come late in a long evaluation, and the last one before the closing is over.
+#[test]
+fn a_training_that_holds_its_run_is_at_work() {
+    let folder = folder("present-held");
+    write_run(&folder, "slow", 3);
+    write_run(&folder, "closing", 1000);
+    let long_ago = std::time::SystemTime::now() - Duration::from_secs(3600);
+    let locks = ["slow", "closing"].map(|name| {
+        let run = folder.join("runs").join(name);
+        let rows = std::fs::File::options().append(true).open(run.join("metrics.jsonl")).unwrap();
+        rows.set_modified(long_ago).unwrap();
+        let lock = std::fs::File::create(run.join("lock")).unwrap();
+        lock.lock().unwrap();
+        lock
+    });
+    let mut page = Page { address: serve(&folder, None), since: 0, runs: BTreeMap::new() };
+    page.wait("held", |runs| {
+        runs.len() == 2
+            && runs["slow"]["state"] == "running"
+            && runs["closing"]["state"] == "evaluating"
+    });
+    drop(locks);
+    page.wait("let go", |runs| {
+        runs["slow"]["state"] == "stopped" && runs["closing"]["state"] == "done"
+    });
+    let _ = std::fs::remove_dir_all(folder);
+}
+
 /// To open a pipe that nobody writes into is to wait for ever.
 #[cfg(unix)]
 #[test]

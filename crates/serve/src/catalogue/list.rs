@@ -2,7 +2,7 @@
 
 use super::columns::Columns;
 use super::evaluated::{self, Stamped};
-use super::files::{Stamp, at_once, open};
+use super::files::{Stamp, at_once, is_held, open};
 use super::notes::{self, Notes};
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
@@ -19,7 +19,8 @@ const MAX_RUNS: usize = 20_000;
 /// Time between two looks at how far the runs are, and between two searches for new ones.
 const LOOK_EVERY: Duration = Duration::from_millis(700);
 const SEARCH_EVERY: Duration = Duration::from_secs(2);
-/// A run that wrote nothing for so long does not run.
+/// A run that wrote something this lately runs, though nobody here holds its lock: another machine
+/// may train it, or its folder is copied from there again and again.
 const ALIVE: Duration = Duration::from_secs(90);
 /// Bytes at a file's end among which its last row is looked for.
 const TAIL: u64 = 32 << 10;
@@ -55,7 +56,8 @@ struct Run {
     notes: Notes,
     /// The folder of those that are served in which it lies.
     top: PathBuf,
-    alive: bool,
+    /// How far it is, in a word.
+    state: &'static str,
     /// Number of the change that made it what it is.
     change: u64,
 }
@@ -171,7 +173,7 @@ impl Catalogue {
                 evaluation: Stamped::default(),
                 notes: Notes::default(),
                 top: top.clone(),
-                alive: false,
+                state: "stopped",
                 change: self.changes,
             };
             self.runs.insert(id.clone(), run);
@@ -259,14 +261,21 @@ impl Run {
             // own.
             self.last = last_row(&path, metrics.bytes).unwrap_or_default();
         }
-        let done = self.config.frames.is_some_and(|frames| self.frames() >= frames);
-        let alive = !done
-            && metrics.bytes > 0
-            && now.duration_since(metrics.modified).unwrap_or_default() < ALIVE;
+        let lately = || {
+            metrics.bytes > 0 && now.duration_since(metrics.modified).unwrap_or_default() < ALIVE
+        };
+        // A long evaluation writes no rows, and a training that has its frames still closes.
+        let state = if self.config.frames.is_some_and(|frames| self.frames() >= frames) {
+            if is_held(&self.path) { "evaluating" } else { "done" }
+        } else if lately() || is_held(&self.path) {
+            "running"
+        } else {
+            "stopped"
+        };
         let evaluated = self.evaluation.look(&self.path);
         let evaluated = self.notes.look(&self.path) || evaluated;
-        let changed = evaluated || (metrics, alive) != (self.metrics, self.alive);
-        (self.metrics, self.alive) = (metrics, alive);
+        let changed = evaluated || (metrics, state) != (self.metrics, self.state);
+        (self.metrics, self.state) = (metrics, state);
         changed
     }
 
@@ -280,17 +289,9 @@ impl Run {
             .iter()
             .filter_map(|name| Some(((*name).to_owned(), self.last.get(*name)?.clone())))
             .collect();
-        let total = config.frames;
-        let state = if total.is_some_and(|total| self.frames() >= total) {
-            "done"
-        } else if self.alive {
-            "running"
-        } else {
-            "stopped"
-        };
         json!({
             "id": id, "settled": self.settled, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
-            "budget": config.safety_budget, "preset": config.options.get("preset"), "total": total, "state": state, "last": last,
+            "budget": config.safety_budget, "preset": config.options.get("preset"), "total": config.frames, "state": self.state, "last": last,
             "notes": self.notes.as_json(),
             "evaluation": self.evaluation.found.as_ref().map(|one| evaluated::as_json(one, config)),
         })

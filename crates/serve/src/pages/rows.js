@@ -8,6 +8,8 @@ const minus = -Infinity;
 // Heads of the columns, whether they are numbers, and what rows are sorted by; a name with a minus before it is the other way round.
 const HEADS = [['experiment', false, (row) => `${row.algo} ${row.rest}`], ['environment', false, (row) => row.env], ['seeds', true, (row) => row.runs.length], ['evaluation return', true, (row) => row.evaluated?.return?.mean ?? minus], ['evaluation cost', true, (row) => row.evaluated?.costs[0]?.cost?.mean ?? minus],
   ['training return', true, (row) => row.training.return?.mean ?? minus], ['training cost', true, (row) => row.training.cost?.mean ?? minus], ['frames', true, (row) => row.frames], ['state', false, (row) => row.state]];
+// A training that has its frames and is still closing is at work too.
+const at_work = ({ state }) => state === 'running' || state === 'evaluating';
 const ORDER = { surely: 3, mean: 2, over: 1, unknown: 0 };
 
 // Several estimates as one: of a single run its own interval over episodes, of more the interval over seeds.
@@ -28,7 +30,7 @@ export function summary(runs, label) {
     return { ...one, cost, kept };
   });
   const count = (state) => runs.filter((run) => run.state === state).length;
-  const states = ['running', 'done', 'stopped'].filter(count);
+  const states = ['running', 'evaluating', 'done', 'stopped'].filter(count);
   const left = Math.max(0, ...runs.filter((run) => run.state === 'running' && run.total && run.last.fps).map((run) => (run.total - (run.last.frames ?? 0)) / run.last.fps));
   return {
     runs, env: first.env, algo: first.algo, rest: label.rest, full: label.full, budget: first.budget, state: states[0],
@@ -52,7 +54,7 @@ export class Rows {
   static sorted(rows, sort) {
     const [, , key] = HEADS.find(([name]) => name === sort.replace('-', '')) ?? [];
     const names = (a, b) => a.env.localeCompare(b.env, 'en', { numeric: true }) || a.algo.localeCompare(b.algo) || a.rest.localeCompare(b.rest, 'en', { numeric: true });
-    if (!key) return rows.sort((a, b) => (b.state === 'running') - (a.state === 'running') || names(a, b));
+    if (!key) return rows.sort((a, b) => at_work(b) - at_work(a) || names(a, b));
     const way = sort.startsWith('-') ? -1 : 1;
     return rows.sort((a, b) => { const [x, y] = [key(a), key(b)]; return way * (typeof x === 'string' ? x.localeCompare(y, 'en', { numeric: true }) : x - y) || names(a, b); });
   }
@@ -120,6 +122,6 @@ export class Rows {
     row.percent.textContent = `${short(what.frames / what.runs.length)}${share != null && share < 1 ? `, ${Math.floor(100 * share)} %` : ''}`;
     row.percent.title = what.runs.length > 1 ? 'frames of a run, on average' : 'frames';
     cells[8].textContent = what.states;
-    cells[8].className = what.state === 'running' ? 'good' : 'pale';
+    cells[8].className = at_work(what) ? 'good' : 'pale';
   }
 }

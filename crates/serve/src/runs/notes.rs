@@ -6,7 +6,7 @@
 use super::asked::on_catalogue;
 use crate::answer::{aside, json_of, refusal};
 use crate::catalogue::Catalogue;
-use crate::catalogue::files::open;
+use crate::catalogue::files::is_held;
 use crate::catalogue::notes::{FILE, TRASH, Words};
 use crate::shared::Shared;
 use axum::extract::State;
@@ -99,10 +99,7 @@ fn throw_away(path: &Path, name: &str, top: &Path) -> Result<Value, String> {
             "{name} is the folder that is served; serve the one above it to throw it away"
         ));
     }
-    // A training holds this file.
-    let held = open(&path.join("lock"))
-        .is_ok_and(|file| matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock)));
-    if held {
+    if is_held(path) {
         return Err(format!("{name} is running; end its training first"));
     }
     let trash = top.join(TRASH);
