@@ -20,7 +20,7 @@ function show() {
     else link.removeAttribute('aria-current');
   }
   document.title = `hasard – ${page}`;
-  const begin = pages[page];
+  const begin = Object.hasOwn(pages, page) ? pages[page] : null;
   if (begin) leave = begin(main, query);
   else main.append(make('p', {}, 'There is no such page.'));
   if (shown !== null) {
@@ -31,4 +31,9 @@ function show() {
 }
 
 addEventListener('hashchange', show);
+// What stands after the # names a page: the link must not lead to one.
+document.querySelector('a.skip').addEventListener('click', (event) => {
+  event.preventDefault();
+  main.focus();
+});
 show();

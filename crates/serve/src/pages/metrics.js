@@ -6,8 +6,10 @@ export const USUAL = ['return_mean', 'cost_mean'];
 const EVALUATED = { return_mean: ['eval/return_mean', 'eval/return_ci95'], cost_mean: ['eval/cost_mean', 'eval/cost_ci95'], length_mean: ['eval/length_mean', 'eval/length_ci95'] };
 const TITLES = { return_mean: 'Return', cost_mean: 'Cost', length_mean: 'Length of episodes', fps: 'Frames a second', multiplier: 'Lagrange multiplier', entropy: 'Entropy' };
 
-export const evaluation_of = (name) => EVALUATED[name] ?? (/^(cost|task)\//.test(name) ? [`eval/${name}`, ''] : []);
-export const title_of = (name) => TITLES[name] ?? name.replace(/^(stats|eval)\//, (whole) => (whole === 'eval/' ? 'evaluation: ' : '')).replaceAll('_', ' ');
+// Names come from files: one may be that of something that every object has.
+const own = (all, name) => (Object.hasOwn(all, name) ? all[name] : null);
+export const evaluation_of = (name) => own(EVALUATED, name) ?? (/^(cost|task)\//.test(name) ? [`eval/${name}`, ''] : []);
+export const title_of = (name) => own(TITLES, name) ?? name.replace(/^(stats|eval)\//, (whole) => (whole === 'eval/' ? 'evaluation: ' : '')).replaceAll('_', ' ');
 
 // What is drawn at first: return, cost, the multiplier of a run that has one (else how well the critic predicts), how certain the policy is.
 export function usual(metrics, last = {}) {

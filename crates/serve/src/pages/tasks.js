@@ -9,7 +9,8 @@ const TASKS = {
 };
 
 export function task_of(env) {
-  const [collect, avoid, seed] = TASKS[env.split('Level')[0]] ?? ['', '', 1];
+  const [name] = env.split('Level');
+  const [collect, avoid, seed] = Object.hasOwn(TASKS, name) ? TASKS[name] : ['', '', 1];
   return { collect, avoid, seed: String(seed) };
 }
 
