@@ -1,8 +1,9 @@
 //! Recorded episodes: the table of the best within the budget, downloads, films.
 
 use crate::answer::{aside, json_of, long_job, refusal};
+use crate::asked::Asked;
 use crate::shared::Shared;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use hasard_engine::render::FrameSize;
@@ -109,7 +110,7 @@ pub(crate) struct Wanted {
 /// A kept episode as it is, or filmed.
 pub(crate) async fn download(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<Wanted>,
+    Asked(query): Asked<Wanted>,
 ) -> Result<Response, Response> {
     let path = path(&shared, &query.name).map_err(|why| refusal(StatusCode::NOT_FOUND, &why))?;
     let (kind, film) = match query.kind.as_str() {

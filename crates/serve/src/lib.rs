@@ -6,6 +6,7 @@
 //! | [`Server`] | the socket, the routes, the thread pool |
 //! | `guard` | who may ask: Host, Origin, token; headers of every answer |
 //! | `door` | how many may ask: connections, and those that ask or take nothing |
+//! | `asked` | what an address asks for, refused in words |
 //! | `catalogue` | run directories found and read from where they were left off |
 //! | `stages` | stages built lately, shared by their viewers |
 //! | `shared` | what the routes share |
@@ -25,6 +26,7 @@
 )]
 
 mod answer;
+mod asked;
 mod catalogue;
 mod door;
 mod episodes;

@@ -44,10 +44,14 @@ fn episodes_are_acted_out_or_read_from_a_run() {
     for (path, code) in [
         (format!("{FORWARD}&act=21"), 400),
         ("env=nothing&act=1".into(), 400),
+        ("env=RemedyRushLevel1-v0&seed=1e3".into(), 400),
+        (format!("{FORWARD}&act=many"), 400),
         ("agent=zoo:nobody&act=1".into(), 404),
         ("agent=run:nothing".into(), 404),
     ] {
-        assert_eq!(status(&get(address, &format!("/api/episodes?{path}"), "")), code, "{path}");
+        let answer = get(address, &format!("/api/episodes?{path}"), "");
+        assert_eq!(status(&answer), code, "{path}");
+        assert!(body(&answer)["error"].is_string(), "{path}: {answer}");
     }
 }
 

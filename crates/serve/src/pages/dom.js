@@ -34,6 +34,11 @@ export function number(value, digits = 2) {
   return text === '-0' ? '0' : text;
 }
 
+// What is wrong with a seed; nothing where it is one. They are text: a number of a page does not hold them all.
+export function wrong_seed(text) {
+  return /^\d{1,20}$/.test(text) && BigInt(text) < 2n ** 64n ? '' : `“${text}” is no seed: give a whole number from 0 to ${2n ** 64n - 1n}.`;
+}
+
 // Asks the server; when it is away, says so and tries again until it is back.
 const link = document.getElementById('link');
 export async function ask(path) {

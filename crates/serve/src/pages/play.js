@@ -1,4 +1,4 @@
-import { ask, choose, field, keepState, make, number } from '/dom.js';
+import { ask, choose, field, keepState, make, number, wrong_seed } from '/dom.js';
 import { Screen } from '/screen.js';
 import { keys_of, task_of } from '/tasks.js';
 
@@ -40,9 +40,10 @@ export function play(main, query) {
   function open() {
     keepState('play', now);
     screen?.end();
-    before = null;
+    screen = before = null;
     show('');
-    link.textContent = '';
+    link.textContent = wrong_seed(now.seed);
+    if (link.textContent) return;
     screen = new Screen(() => `/api/play?${new URLSearchParams({ env: now.env, seed: now.seed, size: now.size, full: now.full || 'false', hard: now.hard || 'false' })}`, { colour: canvas }, { onframe, onwords, onlink: (text) => { link.textContent = text; } });
     best();
   }
@@ -133,7 +134,7 @@ export function play(main, query) {
   });
   canvas.addEventListener('mouseup', (event) => press(event.button === 2 ? 'USE' : 'ATTACK', false));
   canvas.addEventListener('contextmenu', (event) => event.preventDefault());
-  canvas.addEventListener('mousemove', (event) => { if (caught()) screen.ask({ do: 'mouse', right: event.movementX, down: event.movementY }); });
+  canvas.addEventListener('mousemove', (event) => { if (caught()) screen?.ask({ do: 'mouse', right: event.movementX, down: event.movementY }); });
   canvas.addEventListener('wheel', (event) => { if (caught()) { const key = event.deltaY < 0 ? 'SELECT_NEXT_WEAPON' : 'SELECT_PREV_WEAPON'; press(key, true); press(key, false); } }, { passive: true });
   addEventListener('keydown', down);
   addEventListener('keyup', down);
@@ -148,6 +149,7 @@ export function play(main, query) {
     form.replaceChildren(field('environment', choose(what.envs.map((env) => env.id), now.env, (value) => { now.seed = task_of(value).seed; began = false; set('env')(value); controls(); })), field('seed', seed), field('size', choose(['320x240', '640x480', '1280x960'], now.size, set('size'))), tick('full', 'full actions'), tick('hard', 'hard constraint'));
     open();
   }
-  controls();
+  const wrong = (error) => { link.textContent = error.message; };
+  controls().catch(wrong);
   return () => { screen?.end(); removeEventListener('keydown', down); removeEventListener('keyup', down); removeEventListener('blur', blur); if (caught()) document.exitPointerLock(); };
 }

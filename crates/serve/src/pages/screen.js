@@ -1,4 +1,14 @@
 // A show over a WebSocket: pictures onto canvases, numbers and words to the given functions. Comes back when the server does.
+const AWAY = 'The server does not answer; trying again.';
+
+// Why a handshake was refused. Its status is hidden from a page; that of a plain request is not.
+async function refused() {
+  try {
+    const answer = await fetch('/favicon.ico');
+    return answer.ok ? AWAY : (await answer.json()).error;
+  } catch { return AWAY; }
+}
+
 export class Screen {
   constructor(path, canvases, { onframe, onwords, onlink }) {
     Object.assign(this, { path, canvases, onframe, onwords, onlink, ended: false });
@@ -9,19 +19,23 @@ export class Screen {
     const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}${this.path()}`);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
-    let failed = false;
-    socket.onopen = () => this.onlink('');
+    // What the server said against this show, and whether it is worth trying again.
+    let error = null, opened = false;
+    socket.onopen = () => { opened = true; };
     // In the order in which they were sent: decoding a picture takes its time, and words said after it must not come before.
     let turn = Promise.resolve();
-    const take = (data) => (socket === this.socket && !this.ended ? this.take(data) : null);
+    const mine = () => socket === this.socket && !this.ended;
     socket.onmessage = ({ data }) => {
-      if (typeof data === 'string') failed ||= JSON.parse(data).kind === 'error';
-      turn = turn.catch(() => {}).then(() => take(data));
+      if (typeof data === 'string') { const words = JSON.parse(data); if (words.kind === 'error') error = words; }
+      if (!error && mine()) this.onlink('');
+      turn = turn.catch(() => {}).then(() => (mine() ? this.take(data) : null));
     };
-    socket.onclose = () => {
-      if (this.ended || failed || socket !== this.socket) return;
-      this.onlink('The server does not answer; trying again.');
-      setTimeout(() => !this.ended && socket === this.socket && this.open(), 1500);
+    socket.onclose = async () => {
+      if (!mine() || (error && !error.again)) return;
+      const why = error?.why ?? (opened ? AWAY : await refused());
+      if (!mine()) return;
+      this.onlink(why);
+      setTimeout(() => mine() && this.open(), 1500);
     };
   }
 

@@ -1,4 +1,4 @@
-import { ask, choose, field, keepState, make, number } from '/dom.js';
+import { ask, choose, field, keepState, make, number, wrong_seed } from '/dom.js';
 import { Screen } from '/screen.js';
 import { env_name, path_rest } from '/names.js';
 import { Timeline } from '/timeline.js';
@@ -56,13 +56,14 @@ export function watch(main, query) {
 
   function begin() {
     keepState('watch', now);
-    link.textContent = '';
+    link.textContent = wrong_seed(now.seed);
     for (const view of VIEWS) figures[view].hidden = !now.beside.split(',').includes(view);
     const flag = (name) => [name, now[name] || 'false'];
     // After a server was away the show goes on where it was.
     const path = () => `/api/watch?${new URLSearchParams({ ...now, step: String(now.step || 0), ...Object.fromEntries(['best', 'greedy', 'hard', 'full', 'paused'].map(flag)) })}`;
     film.href = path().replace('/api/watch?', '/api/film?');
     screen?.end();
+    if (link.textContent) { screen = null; pair.end(); return; }
     screen = new Screen(path, canvases, { onframe, onwords, onlink: (text) => { link.textContent = text; } });
     if (speed.value !== '1') speed.value = '1';
     if (!now.second) pair.end();
@@ -159,6 +160,6 @@ export function watch(main, query) {
     else if (event.key === 'ArrowLeft') jump(step - 1);
   };
   addEventListener('keydown', keys);
-  controls();
+  controls().catch((error) => { link.textContent = error.message; });
   return () => { gone = true; screen?.end(); pair.end(); removeEventListener('keydown', keys); };
 }

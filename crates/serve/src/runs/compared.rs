@@ -2,8 +2,9 @@
 
 use super::asked::{Chosen, on_catalogue};
 use crate::answer::{aside, json_of};
+use crate::asked::Asked;
 use crate::shared::Shared;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::response::Response;
 use hasard_report::statistics::{aggregate, interquartile_mean};
 use serde_json::{Value, json};
@@ -15,7 +16,7 @@ use std::sync::Arc;
 /// sources do not compare.
 pub(crate) async fn compare(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<Chosen>,
+    Asked(query): Asked<Chosen>,
 ) -> Result<Response, Response> {
     let ids = query.ids()?;
     let runs = on_catalogue(shared, move |catalogue| catalogue.results_of(&ids)).await?;

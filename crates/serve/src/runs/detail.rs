@@ -3,9 +3,10 @@
 use super::asked::{Chosen, One, directory, on_catalogue};
 use super::metrics::{listed, place};
 use crate::answer::{aside, json_of};
+use crate::asked::Asked;
 use crate::catalogue::files::read;
 use crate::shared::Shared;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::response::Response;
 use hasard_learn::config::explained::settings as explained;
 use hasard_learn::config::settings::setting_pointer;
@@ -33,7 +34,7 @@ const OF_ONE_RUN: [&str; 9] = [
 /// heatmaps.
 pub(crate) async fn detail(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<One>,
+    Asked(query): Asked<One>,
 ) -> Result<Response, Response> {
     let path = directory(&shared, query.id.clone()).await?;
     let id = query.id;
@@ -110,7 +111,7 @@ fn share_over(run: &Path) -> Option<f64> {
 /// The settings of some runs, so that their differences show.
 pub(crate) async fn settings(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<Chosen>,
+    Asked(query): Asked<Chosen>,
 ) -> Result<Response, Response> {
     let ids = query.ids()?;
     let paths = on_catalogue(shared, move |catalogue| {

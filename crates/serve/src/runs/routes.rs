@@ -2,9 +2,10 @@
 
 use super::asked::{Chosen, One, directory, on_catalogue};
 use crate::answer::{aside, json_of, long_job, refusal};
+use crate::asked::Asked;
 use crate::catalogue::files::read;
 use crate::shared::Shared;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use hasard_media::files::Scratch;
@@ -26,7 +27,7 @@ pub(crate) struct Since {
 /// Every run that changed since.
 pub(crate) async fn list(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<Since>,
+    Asked(query): Asked<Since>,
 ) -> Result<Response, Response> {
     let listing = on_catalogue(shared, move |catalogue| {
         catalogue.refresh();
@@ -38,7 +39,7 @@ pub(crate) async fn list(
 /// One heatmap of a run.
 pub(crate) async fn heatmap(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<One>,
+    Asked(query): Asked<One>,
 ) -> Result<Response, Response> {
     let path = directory(&shared, query.id).await?;
     let line = aside(move || {
@@ -55,7 +56,7 @@ pub(crate) async fn heatmap(
 /// The map that a heatmap lies over: another one in each lesson of a curriculum.
 pub(crate) async fn automap(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<One>,
+    Asked(query): Asked<One>,
 ) -> Result<Response, Response> {
     let folder = directory(&shared, query.id).await?;
     let picture = aside(move || {
@@ -80,7 +81,7 @@ pub(crate) async fn automap(
 /// Columns of some runs, thinned to what a chart can show.
 pub(crate) async fn curves(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<Chosen>,
+    Asked(query): Asked<Chosen>,
 ) -> Result<Response, Response> {
     let ids = query.ids()?;
     let names: Vec<String> =
@@ -95,7 +96,7 @@ pub(crate) async fn curves(
 /// The report of some runs, as `hasard report` writes it.
 pub(crate) async fn report(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<Chosen>,
+    Asked(query): Asked<Chosen>,
 ) -> Result<Response, Response> {
     let ids = query.ids()?;
     let paths = on_catalogue(Arc::clone(&shared), move |catalogue| {

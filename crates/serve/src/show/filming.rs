@@ -4,8 +4,9 @@ use super::performer::{Performer, performer};
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
 use crate::answer::{long_job, refusal};
+use crate::asked::Asked;
 use crate::shared::Shared;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use hasard_media::files::{Scratch, read_limited};
@@ -22,7 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// The whole episode that a link of the watch page shows, as MP4.
 pub(crate) async fn film(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<WatchQuery>,
+    Asked(query): Asked<WatchQuery>,
 ) -> Result<Response, Response> {
     query.check().map_err(|why| refusal(StatusCode::BAD_REQUEST, &why))?;
     let performer =

@@ -2,13 +2,11 @@
 //! so that a slow viewer gets fewer frames and never a queue; what a viewer sends is bounded in
 //! size and rate.
 
-use crate::answer::refusal;
 use crate::shared::Shared;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
-use axum::http::StatusCode;
 use axum::response::Response;
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, sync_channel};
 use std::time::{Duration, Instant};
@@ -25,6 +23,8 @@ const RATE: u32 = 500;
 /// Time after which a viewer that does not answer is gone.
 const GONE: Duration = Duration::from_secs(45);
 const PING: Duration = Duration::from_secs(15);
+/// Time for the last words.
+const LAST_WORDS: Duration = Duration::from_secs(1);
 
 /// What a viewer asks for.
 #[derive(Deserialize, Debug)]
@@ -106,20 +106,17 @@ impl Line {
     }
 }
 
-/// Takes a viewer in and runs a show for it in a thread.
+/// Takes a viewer in and runs a show for it in a thread; where all places are taken, says so.
 pub(super) fn open(
     shared: Arc<Shared>,
     upgrade: WebSocketUpgrade,
     show: impl FnOnce(Line) + Send + 'static,
-) -> Result<Response, Response> {
+) -> Response {
     let Ok(place) = Arc::clone(&shared.shows).try_acquire_owned() else {
-        return Err(refusal(
-            StatusCode::SERVICE_UNAVAILABLE,
-            "all places are taken; close another page of this server",
-        ));
+        let why = "all places are taken; close another page of this server";
+        return said(upgrade, json!({ "kind": "error", "why": why, "again": true }));
     };
-    let upgrade = upgrade.max_message_size(LARGEST_COMMAND).max_frame_size(LARGEST_COMMAND);
-    Ok(upgrade.on_upgrade(async move |socket| {
+    bounded(upgrade).on_upgrade(async move |socket| {
         let (asks, received) = sync_channel(WAITING);
         let (out, frames) = mpsc::channel(4);
         let line = Line { asks: received, out, on_their_way: 0 };
@@ -130,7 +127,30 @@ pub(super) fn open(
         if begun.is_ok() {
             pump(socket, asks, frames).await;
         }
-    }))
+    })
+}
+
+/// Tells a viewer why there is no show.
+pub(super) fn refuse(upgrade: WebSocketUpgrade, why: String) -> Response {
+    said(upgrade, json!({ "kind": "error", "why": why }))
+}
+
+/// Says some words and ends: it takes no place.
+fn said(upgrade: WebSocketUpgrade, words: Value) -> Response {
+    bounded(upgrade).on_upgrade(async move |mut socket| {
+        let said = async {
+            socket.send(Message::Text(words.to_string().into())).await?;
+            socket.send(Message::Close(None)).await?;
+            // Until the viewer has heard it and ends, too: a connection that is cut may lose it.
+            while socket.recv().await.is_some_and(|message| message.is_ok()) {}
+            Ok::<(), axum::Error>(())
+        };
+        let _ = tokio::time::timeout(LAST_WORDS, said).await;
+    })
+}
+
+fn bounded(upgrade: WebSocketUpgrade) -> WebSocketUpgrade {
+    upgrade.max_message_size(LARGEST_COMMAND).max_frame_size(LARGEST_COMMAND)
 }
 
 /// Carries frames out and commands in until one side ends.
@@ -172,7 +192,7 @@ async fn pump(mut socket: WebSocket, asks: SyncSender<Ask>, mut frames: mpsc::Re
             _ => return,
         }
     }
-    let _ = tokio::time::timeout(Duration::from_secs(1), socket.send(Message::Close(None))).await;
+    let _ = tokio::time::timeout(LAST_WORDS, socket.send(Message::Close(None))).await;
 }
 
 enum Next {

@@ -1,6 +1,7 @@
 //! What an address asks for. It holds the whole state of a show, so that a copied link shows the
 //! same moment.
 
+use crate::asked::seed;
 use hasard_engine::render::FrameSize;
 use hasard_envs::{EnvError, EnvId, EnvOptions, RuleSet};
 use hasard_play::ViewKind;
@@ -26,7 +27,7 @@ pub(crate) struct WatchQuery {
     /// `random`, `sticky:K`, ..., `run:ID`, `zoo:NAME` or `episode:NAME`.
     #[serde(default = "default_agent")]
     pub agent: String,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "seed")]
     pub seed: u64,
     /// Step to begin at.
     #[serde(default)]
@@ -58,7 +59,7 @@ pub(crate) struct WatchQuery {
 #[derive(Deserialize, Clone, Debug)]
 pub(crate) struct PlayQuery {
     pub env: String,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "seed")]
     pub seed: u64,
     #[serde(default = "default_size")]
     pub size: String,

@@ -5,8 +5,9 @@ use super::performer::{Performer, performer};
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
 use crate::answer::{aside, json_of, long_job, refusal};
+use crate::asked::Asked;
 use crate::shared::Shared;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use serde::Deserialize;
@@ -33,8 +34,8 @@ pub(crate) struct Count {
 /// Seed, return and cost of each episode. Seeds are text: a page's numbers do not hold them all.
 pub(crate) async fn episodes(
     State(shared): State<Arc<Shared>>,
-    Query(query): Query<WatchQuery>,
-    Query(count): Query<Count>,
+    Asked(query): Asked<WatchQuery>,
+    Asked(count): Asked<Count>,
 ) -> Result<Response, Response> {
     query.check().map_err(|why| refusal(StatusCode::BAD_REQUEST, &why))?;
     if count.act > MOST_ACTED {

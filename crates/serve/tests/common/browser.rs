@@ -127,6 +127,12 @@ impl Browser {
         self.here("POST", "/execute/sync", &json!({ "script": text, "args": [] }))
     }
 
+    /// Forgets all cookies of the page.
+    #[allow(dead_code, reason = "each test file uses some of it")]
+    pub fn forget(&self) {
+        self.here("DELETE", "/cookie", &Value::Null);
+    }
+
     /// Waits until a script returns true: a minute.
     pub fn wait(&self, text: &str) {
         self.wait_for(text, Duration::from_secs(60));
