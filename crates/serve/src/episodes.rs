@@ -46,7 +46,7 @@ pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, 
             let preset = run["preset"].as_str().map_or_else(String::new, |preset| format!(" ({preset})"));
             let within = ["surely", "mean"].contains(&run["evaluation"]["kept"].as_str()?);
             Some(json!({
-                "who": format!("{}{preset}, seed {}", run["algo"].as_str()?, run["seed"]), "env": run["env"], "return": episode_return,
+                "who": format!("{}{preset}, seed {}", run["algo"].as_str()?, run["seed"].as_str()?), "env": run["env"], "return": episode_return,
                 "cost": cost, "budget": value("/evaluation/costs/0/budget"), "within": within,
                 "agent": format!("run:{}", run["id"].as_str()?),
             }))
@@ -94,7 +94,7 @@ fn row(name: &str, header: &Header) -> Option<Value> {
     };
     Some(json!({
         "who": header.player, "env": header.env, "return": outcome.episode_return, "cost": outcome.cost, "budget": budget,
-        "within": outcome.cost <= budget, "seed": header.seed, "steps": header.steps, "full": has("full-actions", "true"),
+        "within": outcome.cost <= budget, "seed": header.seed.to_string(), "steps": header.steps, "full": has("full-actions", "true"),
         "episode": name, "agent": format!("episode:{name}"),
     }))
 }

@@ -6,7 +6,7 @@ mod browser;
 mod common;
 
 use browser::Browser;
-use common::{folder, serve, write_run};
+use common::{folder, get, serve, write_run};
 use serde_json::json;
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
@@ -99,6 +99,55 @@ fn pages_show_what_is_wrong_with_a_link() {
         browser.wait(&format!("document.querySelector('#numbers b') && {alert} == ''"));
         browser.wait("location.hash.includes('seed=18446744073709551615')");
     }
+}
+
+/// The largest seed there is, which a number of JavaScript does not hold.
+const LARGEST: &str = "18446744073709551615";
+
+#[test]
+fn seeds_keep_all_their_digits() {
+    let folder = folder("pages-seeds");
+    write_run(&folder, "one", 5);
+    let config = format!(
+        r#"{{"algorithm":"PPOLag","env":{{"id":"RemedyRushLevel1-v0","rules":"paper"}},"seed":{LARGEST},"frames":100000}}"#
+    );
+    std::fs::write(folder.join("runs/one/config.json"), config).unwrap();
+    let address = serve(&folder, None);
+    let list = get(address, "/api/runs", "");
+    assert!(list.contains(&format!("\"seed\":\"{LARGEST}\"")), "{list}");
+    let id = list.split("\"id\":\"").nth(1).unwrap().split('"').next().unwrap().to_owned();
+    let detail = get(address, &format!("/api/run?id={id}"), "");
+    assert!(detail.contains(&format!("\"value\":\"{LARGEST}\"")), "{detail}");
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    browser.go(&format!("http://{address}/#run?id={id}"));
+    browser.wait(&format!("document.querySelector('h1').innerText.includes('seed {LARGEST}')"));
+    browser
+        .go(&format!("http://{address}/#play?env=RemedyRushLevel1-v0&size=320x240&seed={LARGEST}"));
+    browser.wait(&format!("document.getElementById('numbers').innerText.includes('{LARGEST}')"));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn a_task_of_ones_own_says_what_it_is_and_how_long() {
+    let folder = folder("pages-own");
+    let file = folder.join("pages_own.toml");
+    let text = hasard_envs::own::template("PagesOwn").replace("tics = 2100", "tics = 1400");
+    let text =
+        text.replace("budget = 25", "summary = \"Glass is worth more than gold.\"\nbudget = 25");
+    std::fs::write(&file, text).unwrap();
+    hasard_envs::own::open(&file.to_string_lossy()).unwrap();
+    let address = serve(&folder, None);
+    let mut socket = connect(address, "/api/play?env=PagesOwn-v0&size=64x48");
+    let scene = words(&mut socket);
+    assert_eq!((&scene["kind"], &scene["seconds"]), (&json!("scene"), &json!(40.0)), "{scene}");
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    browser.go(&format!("http://{address}/#play?env=PagesOwn-v0&size=320x240"));
+    browser.wait("document.getElementById('numbers').innerText.includes('of 40 s')");
+    let task = browser.script("return document.getElementById('task').innerText");
+    let wanted = "Collect vials, keep off the lava Glass is worth more than gold.";
+    assert_eq!(task, json!(wanted));
+    browser.photograph("serve_play_own");
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 #[test]

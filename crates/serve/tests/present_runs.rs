@@ -92,7 +92,7 @@ fn pages_follow_runs_that_are_resumed_replaced_renamed_and_deleted() {
     page.wait("replaced", |runs| {
         let one = &runs["one"];
         (&one["algo"], &one["seed"], &one["last"], &one["state"])
-            == (&json!("PPO"), &json!(7), &json!({}), &json!("stopped"))
+            == (&json!("PPO"), &json!("7"), &json!({}), &json!("stopped"))
     });
     assert_eq!(curve(&page), json!([]));
     // Its rows are more than the former run's were, and none of those is among them.

@@ -290,7 +290,7 @@ impl Run {
             .filter_map(|name| Some(((*name).to_owned(), self.last.get(*name)?.clone())))
             .collect();
         json!({
-            "id": id, "settled": self.settled, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
+            "id": id, "settled": self.settled, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed.to_string(),
             "budget": config.safety_budget, "preset": config.options.get("preset"), "total": config.frames, "state": self.state, "last": last,
             "notes": self.notes.as_json(),
             "evaluation": self.evaluation.found.as_ref().map(|one| evaluated::as_json(one, config)),

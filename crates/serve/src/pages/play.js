@@ -9,7 +9,7 @@ const TOUCH = [['TURN_LEFT', '↺'], ['MOVE_FORWARD', '↑'], ['TURN_RIGHT', '�
 export function play(main, query) {
   const first = query.get('env') ?? 'RemedyRushLevel1-v0';
   const now = { env: first, seed: query.get('seed') ?? task_of(first).seed, size: query.get('size') ?? '640x480', full: query.get('full') ?? '', hard: query.get('hard') ?? '' };
-  let screen = null, paused = true, ended = false, looks = false, began = false, before = null, rows = [], keys = keys_of([], false);
+  let screen = null, paused = true, ended = false, looks = false, began = false, before = null, rows = [], keys = keys_of([], false), whole = 60;
   const form = make('div', { class: 'row' });
   const link = make('p', { class: 'bad', role: 'alert' });
   const canvas = make('canvas', { class: 'view', id: 'game', tabindex: 0, role: 'application', 'aria-label': 'The game. H shows the keys of this task.', width: 640, height: 480 });
@@ -79,8 +79,10 @@ export function play(main, query) {
     if (said.kind === 'scene') {
       looks = said.deltas > 0 || said.buttons.includes('LOOK_UP');
       keys = keys_of(said.buttons, said.deltas > 0 || said.buttons.some((name) => name.startsWith('TURN_')));
+      whole = said.seconds;
       const { collect, avoid } = task_of(now.env);
-      task.replaceChildren(make('b', { class: 'good' }, 'Do: '), `${collect} `, make('b', { class: 'bad' }, 'Avoid: '), `${avoid}.`);
+      // A task of one's own says itself what it is.
+      task.replaceChildren(...(collect ? [make('b', { class: 'good' }, 'Do: '), `${collect} `, make('b', { class: 'bad' }, 'Avoid: '), `${avoid}.`] : [make('b', {}, said.title), ` ${said.summary}`]));
     } else if (said.kind === 'kept') { words.textContent = `The episode is kept as ${said.name}. Enter: next, R: again.`; best(); }
   }
 
@@ -99,7 +101,7 @@ export function play(main, query) {
     else if (!paused && card.dataset.what === 'keys') show('');
     const over = frame.cost > frame.budget;
     const entry = (name, value, kind = '') => make('span', {}, name, make('b', { class: kind }, value));
-    numbers.replaceChildren(entry('time', `${frame.seconds.toFixed(1)} of 60 s`), entry('return', number(frame.return)), entry('cost of budget', `${number(frame.cost)} of ${number(frame.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'), entry('best within', rows.length ? number(rows[0].return) : '–'), entry('seed', String(frame.seed)));
+    numbers.replaceChildren(entry('time', `${frame.seconds.toFixed(1)} of ${number(whole, 1)} s`), entry('return', number(frame.return)), entry('cost of budget', `${number(frame.cost)} of ${number(frame.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'), entry('best within', rows.length ? number(rows[0].return) : '–'), entry('seed', frame.seed));
     meter.value = frame.budget > 0 ? Math.min(1, (frame.cost / frame.budget) * 0.75) : Number(over);
     if (!ended) words.textContent = paused ? (began ? 'Paused. Click the picture or press Enter to go on.' : 'Click the picture or press Enter to begin. H shows the keys.') : '';
   }

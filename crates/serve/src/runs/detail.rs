@@ -83,14 +83,23 @@ fn beside_preset(config: &Value) -> Value {
         let value = own.pointer(&pointer).filter(|value| !value.is_object())?;
         let preset = usual.as_ref().map(|usual| usual.pointer(&pointer).unwrap_or(&Value::Null));
         let differs = preset.is_some_and(|preset| preset != value) && !OF_ONE_RUN.contains(&one.name.as_str());
+        let value = shown(&one.name, value);
         Some(json!({ "name": one.name, "value": value, "preset": preset, "differs": differs, "meaning": one.meaning }))
     });
     rows.collect()
 }
 
+/// A setting as the page shows it: seeds as text, since a page's numbers do not hold them all.
+fn shown(name: &str, value: &Value) -> Value {
+    match value.as_u64().filter(|_| name == "seed") {
+        Some(seed) => json!(seed.to_string()),
+        None => value.clone(),
+    }
+}
+
 fn as_it_is(config: &Value) -> Value {
     let rows = config.as_object().into_iter().flatten();
-    rows.map(|(name, value)| json!({ "name": name, "value": value, "preset": null, "differs": false, "meaning": "" })).collect()
+    rows.map(|(name, value)| json!({ "name": name, "value": shown(name, value), "preset": null, "differs": false, "meaning": "" })).collect()
 }
 
 /// Share of the closing episodes that cost more than a budget; nothing where they were not kept.

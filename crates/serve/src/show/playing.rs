@@ -76,8 +76,13 @@ impl Game {
             .iter()
             .flat_map(|group| group.buttons.iter().map(|(name, _)| *name))
             .collect();
-        line.say(&json!({ "kind": "scene", "buttons": buttons, "deltas": space.deltas.len() }))
-            .map_err(gone)?;
+        let scenario = self.stage.env().id().scenario;
+        // What the page does not know by itself: how long an episode is, and a task of one's own.
+        line.say(&json!({
+            "kind": "scene", "buttons": buttons, "deltas": space.deltas.len(), "seconds": Panel::of(&self.stage, "").whole,
+            "title": scenario.title, "summary": scenario.summary,
+        }))
+        .map_err(gone)?;
         let mut next_tic = Instant::now();
         loop {
             let time = match (self.fresh && line.free(), self.paused || self.stage.ended()) {
@@ -158,7 +163,7 @@ impl Game {
         let panel = Panel::of(&self.stage, "");
         let header = json!({
             "tic": self.stage.world().tic, "seconds": panel.seconds, "return": panel.episode_return, "cost": panel.cost,
-            "budget": panel.budget, "paused": self.paused, "ended": self.stage.ended(), "seed": self.seed,
+            "budget": panel.budget, "paused": self.paused, "ended": self.stage.ended(), "seed": self.seed.to_string(),
         });
         let pictures = self.views.png_files(self.stage.world());
         self.fresh = false;
