@@ -151,6 +151,50 @@ fn a_task_of_ones_own_says_what_it_is_and_how_long() {
 }
 
 #[test]
+fn keys_fire_and_are_let_go_and_an_episode_is_not_lost_by_a_slip() {
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let address = serve(&folder("pages-keys"), None);
+    browser.go(&format!(
+        "http://{address}/#play?env=DetonatorsDilemmaLevel1-v0&size=320x240&full=true"
+    ));
+    browser.wait("document.querySelector('#numbers b')");
+    browser.script("window.sent = []; const send = WebSocket.prototype.send; WebSocket.prototype.send = function (text) { window.sent.push(text); return send.call(this, text); }");
+    let sent = |what: &str, key: &str| {
+        browser.wait(&format!(
+            "window.sent.map(JSON.parse).some((one) => one.do == '{what}' && one.key == '{key}')"
+        ));
+    };
+    let asks = |wanted: bool| {
+        browser.wait(&format!(
+            "(() => {{ const leave = new Event('beforeunload', {{ cancelable: true }}); dispatchEvent(leave); return leave.defaultPrevented == {wanted}; }})()"
+        ));
+    };
+    browser.keys(&["h"], true);
+    browser.keys(&["h"], false);
+    browser.wait("document.getElementById('card').innerText.includes('F, Ctrl, left button')");
+    asks(false);
+    browser.script("document.getElementById('begin').click()");
+    browser.wait("document.querySelector('#numbers b').innerText != '0.0 of 60 s'");
+    asks(true);
+    browser.keys(&["f"], true);
+    sent("press", "ATTACK");
+    browser.keys(&["f"], false);
+    sent("release", "ATTACK");
+    // Let go with Alt held, over a button.
+    let key = |kind: &str, place: &str, alt: bool| {
+        browser.script(&format!("{place}.dispatchEvent(new KeyboardEvent('{kind}', {{ code: 'KeyW', altKey: {alt}, bubbles: true }}))"));
+    };
+    key("keydown", "document.body", false);
+    sent("press", "MOVE_FORWARD");
+    key("keyup", "document.getElementById('begin')", true);
+    sent("release", "MOVE_FORWARD");
+    browser.keys(&["p"], true);
+    browser.keys(&["p"], false);
+    asks(false);
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
 fn a_full_house_and_a_lost_token_are_named() {
     let Some(browser) = Browser::open(1280, 900, false) else { return };
     let address = serve(&folder("pages-full"), None);

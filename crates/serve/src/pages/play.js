@@ -2,8 +2,8 @@ import { ask, choose, field, keepState, make, number, wrong_seed } from '/dom.js
 import { Screen } from '/screen.js';
 import { keys_of, task_of } from '/tasks.js';
 
-// As in the window of `hasard play`.
-const KEYS = { KeyW: 'MOVE_FORWARD', KeyS: 'MOVE_BACKWARD', KeyA: 'MOVE_LEFT', KeyD: 'MOVE_RIGHT', ArrowLeft: 'TURN_LEFT', ArrowRight: 'TURN_RIGHT', Space: 'JUMP', KeyE: 'USE', KeyC: 'CROUCH', ShiftLeft: 'SPEED', ShiftRight: 'SPEED', ControlLeft: 'ATTACK', ControlRight: 'ATTACK', KeyQ: 'SELECT_PREV_WEAPON', KeyT: 'TURN180' };
+// As in the window of `hasard play`, and F to fire: in a browser Ctrl beside W closes the page.
+const KEYS = { KeyW: 'MOVE_FORWARD', KeyS: 'MOVE_BACKWARD', KeyA: 'MOVE_LEFT', KeyD: 'MOVE_RIGHT', ArrowLeft: 'TURN_LEFT', ArrowRight: 'TURN_RIGHT', Space: 'JUMP', KeyE: 'USE', KeyC: 'CROUCH', ShiftLeft: 'SPEED', ShiftRight: 'SPEED', KeyF: 'ATTACK', ControlLeft: 'ATTACK', ControlRight: 'ATTACK', KeyQ: 'SELECT_PREV_WEAPON', KeyT: 'TURN180' };
 const TOUCH = [['TURN_LEFT', '↺'], ['MOVE_FORWARD', '↑'], ['TURN_RIGHT', '↻'], ['ATTACK', 'fire'], ['MOVE_LEFT', '←'], ['MOVE_BACKWARD', '↓'], ['MOVE_RIGHT', '→'], ['JUMP', 'jump'], ['SPEED', 'run'], ['USE', 'use']];
 
 export function play(main, query) {
@@ -117,10 +117,11 @@ export function play(main, query) {
     if (!here.length) table.append(make('tr', {}, make('td', { colspan: 4, class: 'pale' }, 'Nobody yet: finish an episode within the budget and you are here.')));
   }
 
-  const down = (event) => {
-    if (event.target.matches('input,select,button,a') || event.repeat || event.altKey || event.metaKey) return;
+  const keyed = (event) => {
     const key = { ArrowUp: looks ? 'LOOK_UP' : 'MOVE_FORWARD', ArrowDown: looks ? 'LOOK_DOWN' : 'MOVE_BACKWARD' }[event.code] ?? KEYS[event.code];
+    // Wherever and with whatever else a key is let go: held back, it would stay pressed.
     if (event.type === 'keyup') { if (key) press(key, false); return; }
+    if (event.target.matches('input,select,button,a') || event.repeat || event.altKey || event.metaKey) return;
     if (key) { press(key, true); event.preventDefault(); }
     else if (event.code === 'Enter') begin();
     else if (event.code === 'KeyH') help(card.dataset.what !== 'keys');
@@ -138,9 +139,10 @@ export function play(main, query) {
   canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   canvas.addEventListener('mousemove', (event) => { if (caught()) screen?.ask({ do: 'mouse', right: event.movementX, down: event.movementY }); });
   canvas.addEventListener('wheel', (event) => { if (caught()) { const key = event.deltaY < 0 ? 'SELECT_NEXT_WEAPON' : 'SELECT_PREV_WEAPON'; press(key, true); press(key, false); } }, { passive: true });
-  addEventListener('keydown', down);
-  addEventListener('keyup', down);
-  addEventListener('blur', blur);
+  // The browser asks before an episode that runs is lost.
+  const unload = (event) => { if (began && !paused && !ended) event.preventDefault(); };
+  const listened = { keydown: keyed, keyup: keyed, blur, beforeunload: unload };
+  for (const [name, listener] of Object.entries(listened)) addEventListener(name, listener);
 
   async function controls() {
     const what = await ask('/api/envs');
@@ -153,5 +155,5 @@ export function play(main, query) {
   }
   const wrong = (error) => { link.textContent = error.message; };
   controls().catch(wrong);
-  return () => { screen?.end(); removeEventListener('keydown', down); removeEventListener('keyup', down); removeEventListener('blur', blur); if (caught()) document.exitPointerLock(); };
+  return () => { screen?.end(); for (const [name, listener] of Object.entries(listened)) removeEventListener(name, listener); if (caught()) document.exitPointerLock(); };
 }

@@ -15,7 +15,7 @@ export function task_of(env) {
 }
 
 // The keys of this window by the buttons that they press.
-const KEYS = [['W', /MOVE_FORWARD/, 'forward'], ['S', /MOVE_BACKWARD/, 'back'], ['A D', /MOVE_LEFT|MOVE_RIGHT/, 'sideways'], ['← →', /TURN_LEFT|TURN_RIGHT/, 'turn'], ['↑ ↓', /LOOK_/, 'look up and down'], ['Space', /JUMP/, 'jump'], ['Shift', /SPEED/, 'run'], ['Ctrl, left button', /ATTACK/, 'fire'], ['E, right button', /USE/, 'use'], ['C', /CROUCH/, 'crouch'], ['Q, wheel', /WEAPON/, 'change weapon'], ['T', /TURN180/, 'turn round']];
+const KEYS = [['W', /MOVE_FORWARD/, 'forward'], ['S', /MOVE_BACKWARD/, 'back'], ['A D', /MOVE_LEFT|MOVE_RIGHT/, 'sideways'], ['← →', /TURN_LEFT|TURN_RIGHT/, 'turn'], ['↑ ↓', /LOOK_/, 'look up and down'], ['Space', /JUMP/, 'jump'], ['Shift', /SPEED/, 'run'], ['F, Ctrl, left button', /ATTACK/, 'fire'], ['E, right button', /USE/, 'use'], ['C', /CROUCH/, 'crouch'], ['Q, wheel', /WEAPON/, 'change weapon'], ['T', /TURN180/, 'turn round']];
 const ALWAYS = [['Enter', 'begin, go on, next episode'], ['P', 'pause'], ['R', 'the same episode again'], ['N', 'next episode'], ['H', 'these keys'], ['Esc', 'free the mouse']];
 
 export function keys_of(buttons, mouse) {
