@@ -151,6 +151,60 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
 }
 
 #[test]
+fn places_that_are_not_there_are_refused_at_the_start() {
+    let folder = folder("places");
+    std::fs::write(folder.join("file"), "").unwrap();
+    for (flag, path, problem) in [
+        ("--out", "file", "not a directory"),
+        ("--out", "file/deeper", "not a directory"),
+        ("--maps", "no-maps", "this is not there"),
+        ("--iwad", "no.wad", "this is not there"),
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hasard"));
+        let output = command
+            .args(["serve", "--listen", "127.0.0.1:0", flag, path])
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{flag}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            said.lines().count() == 1
+                && said.contains(&format!("{path}: {problem}"))
+                && said.contains(flag),
+            "{said}"
+        );
+    }
+    // A folder that can be made is made once there is an episode for it.
+    let mut command = hasard();
+    command.args(["serve", "--listen", "0.0.0.0:0", "--out", "deep/er"]).current_dir(&folder);
+    let mut server =
+        Running(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
+    let (mut line, mut other) = (String::new(), String::new());
+    let mut said = BufReader::new(server.0.stdout.take().unwrap());
+    said.read_line(&mut line).unwrap();
+    assert!(line.starts_with("http://0.0.0.0:"), "{line}");
+    assert!(!folder.join("deep").exists());
+    // Visitors from elsewhere hear of an address that leads here, or of how to find one.
+    BufReader::new(server.0.stderr.take().unwrap()).read_line(&mut other).unwrap();
+    let token = line.trim().split_once("?token=").unwrap().1;
+    let named = other.contains("http://") && other.contains(token) && !other.contains("//0.0.0.0");
+    assert!(
+        other.starts_with("hasard: from other machines: ")
+            && (named || other.contains("put an address of this one")),
+        "{other}"
+    );
+    drop(server);
+    assert!(
+        !std::fs::read_dir(&folder)
+            .unwrap()
+            .flatten()
+            .any(|entry| { entry.file_name().to_string_lossy().starts_with(".hasard") })
+    );
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn a_folder_that_is_not_there_is_refused() {
     let folder = folder("none");
     let mut command = Command::new(env!("CARGO_BIN_EXE_hasard"));

@@ -10,6 +10,8 @@ use axum::response::{IntoResponse, Response};
 use std::net::IpAddr;
 use std::sync::Arc;
 
+/// The cookie's name goes on with the port that the page was asked at: browsers send all cookies of
+/// a host to each of its ports, and two servers of one name would log each other out.
 const COOKIE: &str = "hasard-token";
 
 /// Nothing is fetched from elsewhere, no script but ours runs, no other page frames this one.
@@ -88,8 +90,9 @@ fn allowed(shared: &Shared, request: &Request) -> Result<(), Box<Response>> {
         .iter()
         .filter_map(|line| line.to_str().ok())
         .flat_map(|line| line.split(';'));
+    let name = format!("{COOKIE}-{}", port_of(host.unwrap_or_default()));
     let mut given =
-        by_cookie.filter_map(|pair| pair.trim().strip_prefix(COOKIE)?.strip_prefix('='));
+        by_cookie.filter_map(|pair| pair.trim().strip_prefix(name.as_str())?.strip_prefix('='));
     if given.any(|given| equal(given, token)) {
         return Ok(());
     }
@@ -101,7 +104,7 @@ fn allowed(shared: &Shared, request: &Request) -> Result<(), Box<Response>> {
     {
         // The token goes out of the address and into a cookie, so that a copied link does not give
         // it away.
-        let cookie = format!("{COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/");
+        let cookie = format!("{name}={token}; HttpOnly; SameSite=Strict; Path=/");
         let to = request.uri().path().to_owned();
         return Err(Box::new(
             (StatusCode::SEE_OTHER, [(header::SET_COOKIE, cookie), (header::LOCATION, to)])
@@ -131,6 +134,11 @@ fn is_address(host: &str) -> bool {
     name == "localhost" || bare.parse::<IpAddr>().is_ok()
 }
 
+/// The port in a host that is an address; HTTP's own where it names none.
+fn port_of(host: &str) -> u16 {
+    host.rsplit_once(':').and_then(|(_, port)| port.parse().ok()).unwrap_or(80)
+}
+
 /// Compares in a time that does not show where the first difference is.
 fn equal(given: &str, token: &str) -> bool {
     given.len() == token.len()
@@ -155,6 +163,11 @@ mod tests {
             "localhost:99999999",
         ] {
             assert!(!is_address(bad), "{bad}");
+        }
+        for (host, port) in
+            [("localhost:8350", 8350), ("localhost", 80), ("[::1]:81", 81), ("[::1]", 80)]
+        {
+            assert_eq!(port_of(host), port, "{host}");
         }
         assert!(equal("abc", "abc") && !equal("abd", "abc") && !equal("ab", "abc"));
     }

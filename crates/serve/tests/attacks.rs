@@ -63,15 +63,19 @@ fn without_the_token_nothing_is_shown() {
     ] {
         assert_eq!(status(&get(address, path, "")), 401, "{path}");
     }
-    assert_eq!(status(&get(address, "/api/runs", "Cookie: hasard-token=letmein1234\r\n")), 401);
+    // Cookies of a host go to all its ports: those of another server let nobody in.
+    let cookie = format!("hasard-token-{}", address.port());
+    for wrong in [format!("{cookie}=letmein1234"), "hasard-token-1=letmein12345".into()] {
+        assert_eq!(status(&get(address, "/api/runs", &format!("Cookie: {wrong}\r\n"))), 401);
+    }
     let given = get(address, "/?token=letmein12345", "");
     assert!(
         status(&given) == 303
-            && given.contains("hasard-token=letmein12345; HttpOnly; SameSite=Strict"),
+            && given.contains(&format!("{cookie}=letmein12345; HttpOnly; SameSite=Strict")),
         "{given}"
     );
     assert_eq!(
-        status(&get(address, "/api/runs", "Cookie: a=b; hasard-token=letmein12345\r\n")),
+        status(&get(address, "/api/runs", &format!("Cookie: a=b; {cookie}=letmein12345\r\n"))),
         200
     );
 }

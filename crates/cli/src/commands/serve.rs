@@ -3,7 +3,9 @@
 use crate::args::ServeArgs;
 use crate::failure::{Failure, Outcome};
 #[cfg(feature = "serve")]
-use std::path::PathBuf;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
+#[cfg(feature = "serve")]
+use std::path::{Path, PathBuf};
 
 /// Runs the command.
 #[cfg(feature = "serve")]
@@ -25,6 +27,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
             folder.display()
         )));
     }
+    places_are_there(args)?;
     let folders = if runs.is_empty() { vec!["runs".into()] } else { runs };
     let beyond = !args.listen.ip().is_loopback();
     let token = match &args.token {
@@ -55,10 +58,75 @@ pub fn run(args: &ServeArgs) -> Outcome {
     let query = token.map_or_else(String::new, |token| format!("?token={token}"));
     let address = format!("http://{}/{query}", server.address());
     say!("{address}");
+    tell_others(server.address(), &query);
     if args.open {
         open(&address);
     }
     server.run().map_err(Failure::bad)
+}
+
+/// Whether there is what will be needed once somebody plays, or watches an agent.
+#[cfg(feature = "serve")]
+fn places_are_there(args: &ServeArgs) -> Outcome {
+    let lost = |path: &&PathBuf| path.as_path() != Path::new("auto") && !path.exists();
+    for (flag, path) in [("--maps", &args.maps), ("--iwad", &args.iwad)] {
+        if let Some(path) = path.as_ref().filter(lost) {
+            let remedy = format!("name where it is now with {flag}, or leave it out");
+            return Err(Failure::bad(format!("{}: this is not there; {remedy}", path.display())));
+        }
+    }
+    can_be_written(&args.out).map_err(|error| {
+        let remedy = "played episodes are kept there; name a folder of yours with --out";
+        Failure::bad(format!("{}: {error}; {remedy}", args.out.display()))
+    })
+}
+
+/// Whether a folder can be written to, or made. It is not made before there is something for it.
+#[cfg(feature = "serve")]
+fn can_be_written(folder: &Path) -> std::io::Result<()> {
+    let whole = std::path::absolute(folder)?;
+    let there = whole.ancestors().find(|path| path.exists()).unwrap_or(&whole);
+    if !there.is_dir() {
+        return Err(std::io::ErrorKind::NotADirectory.into());
+    }
+    let probe = there.join(format!(".hasard-{}", std::process::id()));
+    std::fs::File::create_new(&probe)?;
+    std::fs::remove_file(probe)
+}
+
+/// Says how visitors reach a server that listens at every address of this machine: 0.0.0.0 leads
+/// nobody here.
+#[cfg(feature = "serve")]
+fn tell_others(server: SocketAddr, query: &str) {
+    if !server.ip().is_unspecified() {
+        return;
+    }
+    match own_address(server.is_ipv6()) {
+        Some(ip) => {
+            let own = SocketAddr::new(ip, server.port());
+            note!("hasard: from other machines: http://{own}/{query}");
+        }
+        None => note!(
+            "hasard: from other machines: put an address of this one in the place of {}",
+            server.ip()
+        ),
+    }
+}
+
+/// The address from which this machine speaks to others.
+#[cfg(feature = "serve")]
+fn own_address(six: bool) -> Option<IpAddr> {
+    // Addresses for documentation, of nobody. Nothing is sent: the system only says what it would
+    // be sent from.
+    let four = (IpAddr::from(Ipv4Addr::UNSPECIFIED), IpAddr::from(Ipv4Addr::new(192, 0, 2, 1)));
+    let to_six = IpAddr::from(Ipv6Addr::new(0x2001, 0xdb8, 0, 0, 0, 0, 0, 1));
+    let six = six.then_some((IpAddr::from(Ipv6Addr::UNSPECIFIED), to_six));
+    six.into_iter().chain([four]).find_map(|(from, to)| {
+        let socket = UdpSocket::bind((from, 0)).ok()?;
+        socket.connect((to, 9)).ok()?;
+        let own = socket.local_addr().ok()?.ip();
+        (!own.is_unspecified() && !own.is_loopback()).then_some(own)
+    })
 }
 
 /// Sixteen bytes of the system's randomness.
