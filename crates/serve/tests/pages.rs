@@ -195,6 +195,27 @@ fn keys_fire_and_are_let_go_and_an_episode_is_not_lost_by_a_slip() {
 }
 
 #[test]
+fn a_search_takes_any_case_and_paths_any_separator() {
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let folder = folder("pages-search");
+    write_run(&folder, "Sweep/One", 5);
+    write_run(&folder, "sweep/two", 5);
+    let address = serve(&folder, None);
+    for (text, rows) in
+        [("sWEEP/o", "1 run of"), ("SWEEP", "2 runs of"), ("remedyRUSH", "2 runs of")]
+    {
+        browser.go(&format!("http://{address}/#runs?text={text}"));
+        browser.wait(&format!("document.body.innerText.includes('{rows}')"));
+    }
+    let rest = |name: &str| {
+        browser.script(&format!("return import('/names.js').then(({{ path_rest }}) => path_rest({{ name: {name:?}, env: 'RemedyRushLevel1-v0', algo: 'PPO', seed: '1' }}))"))
+    };
+    assert_eq!(rest("study/RemedyRushLevel1/PPO/seed1"), "study");
+    assert_eq!(rest(r"study\RemedyRushLevel1\PPO\seed1\b"), r"study\b");
+    assert_eq!(rest(r"st\udy/PPO"), r"st\udy");
+}
+
+#[test]
 fn a_full_house_and_a_lost_token_are_named() {
     let Some(browser) = Browser::open(1280, 900, false) else { return };
     let address = serve(&folder("pages-full"), None);

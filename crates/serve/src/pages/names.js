@@ -13,7 +13,9 @@ export function env_name(id) {
 // A run's path without the parts that environment, algorithm and seed say already.
 export function path_rest(run) {
   const said = [run.env, run.env.replace(/-v\d+$/, ''), run.algo, `seed${run.seed}`, `seed_${run.seed}`, `seed-${run.seed}`, `s${run.seed}`, String(run.seed)].map((one) => String(one).toLowerCase());
-  return run.name.split('/').filter((part) => !said.includes(part.toLowerCase())).join('/');
+  // As Windows writes it, unless the path is of another system: there a name may hold a \.
+  const between = run.name.includes('/') ? '/' : '\\';
+  return run.name.split(between).filter((part) => !said.includes(part.toLowerCase())).join(between);
 }
 
 // Options that always stand beside an algorithm's name, if a run has them: what matters most first.

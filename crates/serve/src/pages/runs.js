@@ -33,7 +33,7 @@ export function runs(main, query) {
     const text_of = (run) => `${run.name} ${run.env} ${run.algo} ${settings(run).join(' ')} ${run.notes?.note ?? ''} ${(run.notes?.tags ?? []).join(' ')}`;
     archived.parentElement.hidden = ![...known.values()].some((run) => run.notes?.archived);
     const fits = (run) => (archived.checked || !run.notes?.archived) && (!wanted.env || run.env === wanted.env) && (!wanted.algo || run.algo === wanted.algo)
-      && (!wanted.option || settings(run).includes(wanted.option)) && (!wanted.text || text_of(run).includes(wanted.text));
+      && (!wanted.option || settings(run).includes(wanted.option)) && (!wanted.text || text_of(run).toLowerCase().includes(wanted.text.toLowerCase()));
     const groups = new Map();
     for (const run of known.values()) if (fits(run)) groups.set(run.experiment, [...(groups.get(run.experiment) ?? []), run]);
     const all = [...groups].map(([key, group]) => ({ key, ...summary(group.sort((a, b) => a.seed - b.seed || a.name.localeCompare(b.name)), named.get(key) ?? { rest: '', full: '' }) }));
