@@ -121,7 +121,10 @@ fn a_scoreboard_lists_what_holds_and_says_what_does_not() {
     let output = folder.run("scoreboard board --json");
     let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((output.status.code(), &printed["hold"]), (Some(1), &json!(0)), "{printed}");
-    assert!(printed["refused"][0]["why"].as_str().unwrap().contains("one of 200, 1000, 10000"), "{printed}");
+    assert!(
+        printed["refused"][0]["why"].as_str().unwrap().contains("one of 200, 1000, 10000"),
+        "{printed}"
+    );
     let page = String::from_utf8(folder.read("board/index.html")).unwrap();
     assert!(page.contains("Not listed"), "the page says why");
     let _ = (path, claim);

@@ -3,6 +3,7 @@
 use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use hasard_envs::Episode;
 use hasard_media::shell::quote;
@@ -124,7 +125,15 @@ impl RunDirectory {
             .write(true)
             .open(&file)
             .map_err(LearnError::file(&file, "open"))?;
-        match lock.try_lock() {
+        // Who only asks whether a training is here, as `hasard serve` does, has it for a moment.
+        let mut held = lock.try_lock();
+        for _ in 0..2 {
+            if matches!(held, Err(TryLockError::WouldBlock)) {
+                std::thread::sleep(Duration::from_millis(20));
+                held = lock.try_lock();
+            }
+        }
+        match held {
             Ok(()) => {
                 Ok(RunDirectory { path: path.to_path_buf(), made: (false, made), _lock: lock })
             }

@@ -191,10 +191,14 @@ fn origin_of(path: &Path) -> Origin {
 fn holds_episodes(path: &Path) -> bool {
     use std::io::{BufRead, Read};
     let rollouts = path.extension().is_some_and(|extension| extension == "jsonl");
+    // A pipe that nobody writes to would be waited for.
+    if !rollouts || !path.is_file() {
+        return false;
+    }
     let Ok(file) = std::fs::File::open(path) else { return false };
     let mut line = String::new();
     let read = || std::io::BufReader::new(file.take(1 << 16)).read_line(&mut line).is_ok();
-    rollouts && read() && read_episode_lines(&line, path, &mut Vec::new()).len() == 1
+    read() && read_episode_lines(&line, path, &mut Vec::new()).len() == 1
 }
 
 fn read_rollout(path: &Path, found: &mut Found) {

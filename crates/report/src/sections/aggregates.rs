@@ -121,7 +121,7 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
 
 /// The sets of environments that the algorithms have scores in, by their places: the largest first.
 fn environment_sets(algorithms: &[Scored]) -> Vec<Vec<usize>> {
-    let mut sets: Vec<Vec<usize>> = algorithms.iter().map(|one| places(one)).collect();
+    let mut sets: Vec<Vec<usize>> = algorithms.iter().map(places).collect();
     sets.sort_by(|a, b| b.len().cmp(&a.len()).then(a.cmp(b)));
     sets.dedup();
     sets

@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::evaluated::{self, Stamped};
 use super::files::{Stamp, at_once, is_held, open};
-use super::notes::{self, Notes};
+use super::notes::{Notes, TRASH};
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -326,7 +326,7 @@ fn folders_of_runs(top: &Path, folder: &Path, depth: usize, found: &mut Vec<Foun
     }
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
-        let trash = depth == 0 && entry.file_name() == notes::TRASH;
+        let trash = entry.file_name() == TRASH;
         if !trash && depth < MAX_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
             folders_of_runs(top, &entry.path(), depth + 1, found);
         }

@@ -1,13 +1,11 @@
 //! What people say of a run: a note, tags, whether it is put aside. `notes.json` of a run holds it.
 
 use super::files::{Stamp, read};
+pub(crate) use hasard_report::run::TRASH;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use std::io::ErrorKind;
 use std::path::Path;
-
-/// The folder of runs that were thrown away.
-pub(crate) const TRASH: &str = ".trash";
 
 /// The file of a run that holds them.
 pub(crate) const FILE: &str = "notes.json";
