@@ -26,6 +26,9 @@ class VecEnv(_VecEnv):
         env_id: one of `hasard_rs.ids()`.
         n_envs: lanes.
         arguments: those of `help(hasard_rs.VectorEnv)`; layout is "chw" unless given.
+
+    Raises:
+        InvalidOption for batch_size or copy; what `hasard_rs.make_vec` raises.
     """
 
     def __init__(self, env_id: str, n_envs: int = 1, **arguments: Any) -> None:

@@ -43,7 +43,7 @@ class ActionFormat:
         raise NotImplementedError
 
     def masks(self, choices: np.ndarray) -> np.ndarray:
-        """Turns masks of the categorical parts' choices, bool [n, sum of nvec], into masks of the space's choices, bool [n, m]."""
+        """Returns masks of the space's choices, bool [n, m], made of `choices`, those of the categorical parts', bool [n, sum of nvec]."""
         return choices
 
     def _integers(self, given: Any, shape: tuple[int, ...], what: str) -> np.ndarray:

@@ -21,6 +21,9 @@ class HasardVectorEnv:
         num_envs: lanes.
         num_threads: worker threads beside the caller's.
         arguments: those of `help(hasard_rs.Env)`; layout is "chw" unless given.
+
+    Raises:
+        InvalidOption for the action formats "tuple" and "dict"; what `hasard_rs.Worlds` raises.
     """
 
     is_async = False

@@ -21,6 +21,9 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         saute_gamma: discount of the cost; 1.0: none.
         budget: cost that an episode may have; None: the environment's.
         unsafe_reward: of each step that finds nothing left.
+
+    Raises:
+        InvalidOption for a saute_gamma that is no discount.
     """
 
     def __init__(
