@@ -73,11 +73,12 @@ class Campaign:
 
     def refuse_others(self, root):
         """Ends the program where runs of another study lie among a campaign's: their means would be nobody's."""
+        alike = {}
         for run in self.runs:
             first = self.runs[0]
             if run.terms != first.terms:
                 raise SystemExit(f"{root}: has runs under {first.terms} and under {run.terms}; leave one kind there")
-            like = next(one for one in self.runs if (one.algorithm, one.env) == (run.algorithm, run.env))
+            like = alike.setdefault((run.algorithm, run.env), run)
             # Settings that came since are not in older files, and have no effect there.
             if any(like.learning.get(name, value) != value for name, value in run.learning.items()):
                 raise SystemExit(f"{root}: {run.algorithm} on {run.env} has runs of several `learning` settings; leave one kind there")

@@ -6,8 +6,9 @@
 Of each run: settings, selection, closing episodes, curves with a row for each percent of the frames, the last heatmap of each level
 with its map, and `eval.jsonl` if there is one. Agents are kept of the seeds that `--agents` names, for they are most of the bytes
 (with `--algorithms` of those algorithms alone).
-Numbers have six significant digits, and episodes no name of their environment where it is the run's. Runs without a selection are passed over and counted. A run whose copy is there already is left
-alone; files of episodes beside the runs (`random-*.jsonl`) are copied too.
+Numbers have six significant digits, and episodes no name of their environment where it is the run's. Runs without a selection are
+passed over and counted. A run whose copy is there already is left alone; files of episodes beside the runs (`random-*.jsonl`) are
+copied too.
 """
 
 import argparse
@@ -61,12 +62,11 @@ def write_lines(path, rows):
     path.write_text("".join(json.dumps(rounded(row), separators=(",", ":")) + "\n" for row in rows))
 
 
-def keep(run, copy, hasard, with_agent):
+def keep(run, copy, env, hasard, with_agent):
     """Writes the copy of a run; a copy that is there is a whole one, for its folder gets its name last."""
     half = copy.with_name(copy.name + ".part")
     shutil.rmtree(half, ignore_errors=True)
     half.mkdir(parents=True)
-    env = json.loads((run / "config.json").read_text())["env"]["id"]
     for name in WHOLE:
         (half / name).write_text(json.dumps(rounded(json.loads((run / name).read_text())), separators=(",", ":")) + "\n")
     for name in EPISODES:
@@ -107,7 +107,7 @@ def main(arguments=None):
             continue
         settings = json.loads(config.read_text())
         wanted = not args.algorithms or settings["algorithm"] in args.algorithms
-        keep(run, copy, args.hasard, wanted and settings["seed"] in args.agents)
+        keep(run, copy, settings["env"]["id"], args.hasard, wanted and settings["seed"] in args.agents)
         kept += 1
     for file in args.runs.glob("*.jsonl"):
         args.copies.mkdir(parents=True, exist_ok=True)

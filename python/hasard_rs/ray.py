@@ -85,7 +85,7 @@ class Sampler:
             rollout["actions"][step], self.observations = actions, batch.observations
             if deltas is not None:
                 rollout["deltas"][step] = deltas
-            rollout["final_observations"] += list(batch.final_observations.copy())
+            rollout["final_observations"] += list(batch.final_observations)
             rollout["final_lanes"] += batch.final_lanes.tolist()
             rollout["final_steps"] += [step] * len(batch.final_lanes)
             for name in ("rewards", "costs", "cost_terms", "terminated", "truncated"):

@@ -42,7 +42,6 @@ class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
 
     def __init__(self, env_id: str, num_agents: int, *, render_mode: str | None = None, **arguments: Any) -> None:
         self.worlds = hasard_rs.Worlds(env_id, num_agents, layout="chw", **arguments)
-        self.frame_skip = int(arguments.get("frame_skip", 4))
         self._format = action_format("tuple", self.worlds.nvec, self.worlds.num_deltas, 11)
         self.num_agents, self.render_mode = num_agents, render_mode
         self.observation_space = gymnasium.spaces.Dict({"obs": gymnasium.spaces.Box(0, 255, self.worlds.observation_shape, np.uint8)})

@@ -4,11 +4,12 @@ use crate::actor::Performance;
 use crate::args::HighlightsArgs;
 use crate::failure::{Failure, Outcome};
 use crate::places;
-use crate::settings::Elsewhere;
+use crate::settings::{Elsewhere, first_task};
 use crate::ticker::Ticker;
 use crate::zoo;
 use hasard_engine::render::FrameSize;
 use hasard_envs::{EnvId, EnvOptions};
+use hasard_learn::runs::agent::run_config;
 use hasard_media::compose::{Panel as Cell, grid};
 use hasard_media::{Picture, gif};
 use hasard_play::{Overlay, Panel, ViewKind, Views, with_strip};
@@ -113,7 +114,7 @@ pub fn run(args: &HighlightsArgs) -> Outcome {
     };
     // A name that is wrong ends it before the first film, not after.
     let agents = what.iter().map(|agent| places::run(agent)).collect::<Result<Vec<_>, _>>()?;
-    told_apart(&agents)?;
+    of_different_tasks(&agents)?;
     std::fs::create_dir_all(&args.out).map_err(|error| {
         Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display()))
     })?;
@@ -125,10 +126,10 @@ pub fn run(args: &HighlightsArgs) -> Outcome {
 
 /// A film has the name of its environment: of two agents of one, the second's would take the place
 /// of the first's.
-fn told_apart(agents: &[PathBuf]) -> Outcome {
+fn of_different_tasks(agents: &[PathBuf]) -> Outcome {
     let mut seen: Vec<(String, &PathBuf)> = Vec::new();
     for agent in agents {
-        let (env, _) = crate::environment_of_run(agent).map_err(Failure::bad)?;
+        let env = first_task(&run_config(agent).map_err(Failure::bad)?.env);
         if let Some((_, other)) = seen.iter().find(|(known, _)| *known == env) {
             return Err(Failure::bad(format!(
                 "{} and {} are both of {env}, and their films would have one name; give each a run of its own with another --out",

@@ -58,7 +58,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
     let query = token.map_or_else(String::new, |token| format!("?token={token}"));
     let address = format!("http://{}/{query}", server.address());
     say!("{address}");
-    tell_others(server.address(), &query);
+    name_to_others(server.address(), &query);
     if args.open {
         open(&address);
     }
@@ -97,7 +97,7 @@ fn can_be_written(folder: &Path) -> std::io::Result<()> {
 /// Says how visitors reach a server that listens at every address of this machine: 0.0.0.0 leads
 /// nobody here.
 #[cfg(feature = "serve")]
-fn tell_others(server: SocketAddr, query: &str) {
+fn name_to_others(server: SocketAddr, query: &str) {
     if !server.ip().is_unspecified() {
         return;
     }

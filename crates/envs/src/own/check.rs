@@ -4,9 +4,6 @@ use super::mistakes::Mistakes;
 use super::model::{GenerateKind, MapPlan, Names, Of, Plan, TileKind, Trigger};
 use hasard_engine::world::ActorKind;
 
-/// Height of the agent, map units: it goes nowhere that is lower.
-const AGENT_HEIGHT: i32 = 56;
-
 /// Warns of what happens in none of the settings.
 pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
     let Some(first) = plans.first() else { return };
@@ -70,6 +67,7 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
 /// Warns of places that the agent is put on and has no room to stand, and of platforms too near the
 /// ceiling to walk on.
 fn warn_of_low_ceilings(plans: &[Plan], mistakes: &mut Mistakes) {
+    let agent = ActorKind::Player.height().floor();
     for plan in plans {
         let MapPlan::Tiles(tiles) = &plan.map else { continue };
         let here = |kind: &TileKind| {
@@ -77,13 +75,13 @@ fn warn_of_low_ceilings(plans: &[Plan], mistakes: &mut Mistakes) {
                 || tiles.tiles.iter().any(|tile| tiles.kinds[usize::from(*tile)] == *kind)
         };
         let low = |kind: &&TileKind| {
-            kind.start && !kind.rock && here(kind) && kind.ceiling - kind.floor[1] < AGENT_HEIGHT
+            kind.start && !kind.rock && here(kind) && kind.ceiling - kind.floor[1] < agent
         };
         if let Some(kind) = tiles.kinds.iter().find(low) {
             mistakes.warn(
                 0,
                 format!(
-                    "the agent is {AGENT_HEIGHT} high, and there are {} from floor to ceiling at its start `{}`: it cannot move",
+                    "the agent is {agent} high, and there are {} from floor to ceiling at its start `{}`: it cannot move",
                     kind.ceiling - kind.floor[1],
                     kind.letter
                 ),
@@ -92,12 +90,12 @@ fn warn_of_low_ceilings(plans: &[Plan], mistakes: &mut Mistakes) {
         let ground = tiles.kinds.iter().find(|kind| kind.letter == '.');
         if let (Some(generate), Some(ground)) = (tiles.generate, ground)
             && generate.kind == GenerateKind::Platforms
-            && generate.heights[1] + AGENT_HEIGHT > ground.ceiling
+            && generate.heights[1] + agent > ground.ceiling
         {
             mistakes.warn(
                 0,
                 format!(
-                    "platforms of heights up to {} leave the agent, {AGENT_HEIGHT} high, no room below the ceiling of {}: lower `heights`, or raise the ceiling of letter `.`",
+                    "platforms of heights up to {} leave the agent, {agent} high, no room below the ceiling of {}: lower `heights`, or raise the ceiling of letter `.`",
                     generate.heights[1], ground.ceiling
                 ),
             );

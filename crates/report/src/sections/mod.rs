@@ -115,7 +115,7 @@ fn main_groups(groups: &[Group]) -> Vec<(String, Vec<&Group>)> {
             settings.entry(setting(group)).or_default().push(group);
         }
     }
-    let mut settings: Vec<_> = settings.into_iter().flat_map(told_apart).collect();
+    let mut settings: Vec<_> = settings.into_iter().flat_map(kept_apart).collect();
     let longest =
         |members: &[&Group]| members.iter().map(|group| group.frames_span().1).fold(0.0, f64::max);
     settings.sort_by(|a, b| longest(&b.1).total_cmp(&longest(&a.1)));
@@ -125,7 +125,7 @@ fn main_groups(groups: &[Group]) -> Vec<(String, Vec<&Group>)> {
 /// A table has a cell for an algorithm in an environment. Where experiments of a setting differ in
 /// what the setting does not show, frames that are rounded alike or one of two usual budgets, the
 /// further ones get a table each that says so.
-fn told_apart((setting, members): (String, Vec<&Group>)) -> Vec<(String, Vec<&Group>)> {
+fn kept_apart((setting, members): (String, Vec<&Group>)) -> Vec<(String, Vec<&Group>)> {
     let cell = |group: &Group| {
         let config = group.config();
         (config.env.clone(), config.algo.to_ascii_lowercase())

@@ -130,7 +130,7 @@ pub(super) fn open(
     })
 }
 
-/// Tells a viewer why there is no show.
+/// Says to a viewer why there is no show.
 pub(super) fn refuse(upgrade: WebSocketUpgrade, why: String) -> Response {
     said(upgrade, json!({ "kind": "error", "why": why }))
 }

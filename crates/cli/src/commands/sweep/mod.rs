@@ -47,9 +47,10 @@ pub fn run(args: &SweepArgs) -> Outcome {
             all - pairs.len()
         );
     }
-    pairs.iter().try_for_each(|(job, config)| fits(job, config))?;
+    let longer =
+        pairs.iter().map(|(job, config)| fits(job, config)).collect::<Result<Vec<_>, _>>()?;
     if !args.json {
-        name_longer(&pairs);
+        name_longer(&longer.into_iter().flatten().collect::<Vec<_>>(), pairs.len());
     }
     if args.dry_run {
         return list(args, &pairs, sweep.parallel);
@@ -79,11 +80,12 @@ pub fn run(args: &SweepArgs) -> Outcome {
     execute(args, &sweep, &jobs, rate)
 }
 
-/// Refuses a run that lies where the sweep would train one by other settings.
-fn fits(job: &Job, config: &TrainConfig) -> Outcome {
-    let Ok(found) = read_config(&job.directory) else { return Ok(()) };
+/// Refuses a run that lies where the sweep would train one by other settings; gives the frames of
+/// one that was made for more than the sweep asks for.
+fn fits<'a>(job: &'a Job, config: &TrainConfig) -> Result<Option<(&'a Job, u64)>, Failure> {
+    let Ok(found) = read_config(&job.directory) else { return Ok(None) };
     match found.unlike(&config.clone().begun()) {
-        None => Ok(()),
+        None => Ok((found.frames > config.frames).then_some((job, found.frames))),
         Some((name, was, wanted)) => Err(Failure::bad(format!(
             "{}: was trained with {name} = {was}, the sweep asks for {wanted}; choose another `out`, or move that run away",
             job.directory.display()
@@ -91,21 +93,13 @@ fn fits(job: &Job, config: &TrainConfig) -> Outcome {
     }
 }
 
-/// Says of which runs that are there already the schedules were made for more frames than are asked
-/// for: they count as finished, and are not what the sweep alone would make.
-fn name_longer(pairs: &[(Job, TrainConfig)]) {
-    let longer: Vec<(&Job, u64)> = pairs
-        .iter()
-        .filter_map(|(job, config)| {
-            let found = read_config(&job.directory).ok()?;
-            (found.frames > config.frames).then_some((job, found.frames))
-        })
-        .collect();
+/// Says which runs are there already whose schedules were made for more frames than are asked for:
+/// they count as finished, and are not what the sweep alone would make.
+fn name_longer(longer: &[(&Job, u64)], all: usize) {
     if let Some((job, frames)) = longer.first() {
         note!(
-            "hasard: {} of {} runs were made for more frames than this sweep asks for, and count as finished; {} for {frames}. Another `out` makes them anew",
+            "hasard: {} of {all} runs were made for more frames than this sweep asks for, and count as finished; {} for {frames}. Another `out` makes them anew",
             longer.len(),
-            pairs.len(),
             job.directory.display()
         );
     }
