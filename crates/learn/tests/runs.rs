@@ -168,26 +168,6 @@ fn a_run_does_not_depend_on_how_lanes_are_dealt_out() {
 }
 
 #[test]
-fn sampling_beside_learning_works_and_bounds_the_lag() {
-    let mut config = tiny::config(AlgorithmKind::PpoLag);
-    config.sampling.synchronous = false;
-    config.sampling.accumulated = 2;
-    config.reporting.checkpoint_seconds = 0.0;
-    config.frames = 20 * config.frames_per_rollout();
-    let path = tiny::directory("side-by-side");
-    let (result, reports, warnings) = tiny::run(Start::Fresh(config.clone()), &path);
-    result.unwrap();
-    assert!(warnings.is_empty(), "{warnings:?}");
-    let updates_per_rollout = (config.learning.epochs * config.learning.minibatches) as f64;
-    for report in &reports {
-        let lag = report.learning.iter().find(|(name, _)| *name == "policy_lag").unwrap().1;
-        assert!(lag <= 3.0 * updates_per_rollout, "{lag}");
-    }
-    assert!(checkpoints(&path).len() <= config.reporting.keep + 1);
-    fs::remove_dir_all(path).unwrap();
-}
-
-#[test]
 fn rows_have_their_stable_keys() {
     let mut config = tiny::config(AlgorithmKind::PpoLag);
     config.frames = 4 * config.frames_per_rollout();

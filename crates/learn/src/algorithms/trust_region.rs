@@ -342,4 +342,75 @@ mod tests {
         assert!(rest < 1e-3 * all, "{rest} of {all}");
         assert!(squares(&back, &x.product) < 1e-3 * all, "the product that is reported");
     }
+
+    /// A step along a direction, halved until it is accepted: one that raises the divergence too
+    /// far is shortened to one that does not, and one that nothing accepts leaves every bit as it
+    /// was. Parameters move by the reported share of the step.
+    #[test]
+    fn a_search_ends_in_an_accepted_step_or_where_it_began() {
+        let config = small::config(AlgorithmKind::Trpo);
+        let (mut learner, rollout) = small::learner(&config);
+        learner.absorb(&rollout).unwrap();
+        let prepared = learner.prepare(&rollout);
+        let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
+        // The rollout's outputs are noise: the policy that acted is the present one here.
+        let outputs = learner.policy_outputs(&mut minibatch.batch, &learner.policy_parameters());
+        minibatch.old_policy =
+            Policy::new(&learner.shape().action, &outputs, learner.shape().action.parameters());
+        let region =
+            TrustRegion { search_steps: 30, search_factor: 0.5, ..TrustRegion::new(&config) };
+        let origin = region.origin(&mut learner, &mut minibatch);
+        let step: Vec<f32> =
+            (0..origin.parameters.len()).map(|index| (index as f32).sin() * 3.0).collect();
+        let mut means = Means::default();
+        let mut asked = Vec::new();
+        region.search(&mut learner, &mut minibatch, &origin, &step, &mut means, |_, divergence| {
+            asked.push(divergence);
+            divergence <= 0.01
+        });
+        let share = means.get("step_share").unwrap();
+        assert!(asked.len() > 1 && share == 0.5f64.powi(asked.len() as i32 - 1), "{asked:?}");
+        assert!(asked[0] > 0.01 && *asked.last().unwrap() <= 0.01, "{asked:?}");
+        let parameters = learner.policy_parameters();
+        for ((now, then), step) in parameters.iter().zip(&origin.parameters).zip(&step) {
+            assert!((f64::from(now - then) - share * f64::from(*step)).abs() < 1e-6);
+        }
+        let divergence = learner.policy(&mut minibatch);
+        let divergence = minibatch.old_policy.divergence(&divergence).mean();
+        assert!((divergence - asked.last().unwrap()).abs() < 1e-9, "the accepted policy acts");
+        let mut means = Means::default();
+        region.search(&mut learner, &mut minibatch, &origin, &step, &mut means, |_, _| false);
+        assert_eq!(means.get("step_share"), Some(0.0));
+        assert_eq!(learner.policy_parameters(), origin.parameters);
+    }
+
+    /// Schulman et al. 2015, appendix C: the step's length is such that half its quadratic form
+    /// with the Fisher matrix is the radius, and the line search never ends beyond it.
+    #[test]
+    fn trpo_moves_to_the_edge_of_its_region_and_not_beyond() {
+        use crate::algorithms::trpo::Trpo;
+        for radius in [1e-4, 1e-3, 1e-2] {
+            let mut config = small::config(AlgorithmKind::Trpo);
+            config.algorithm_settings.trust_radius = radius;
+            let (mut learner, rollout) = small::learner(&config);
+            learner.absorb(&rollout).unwrap();
+            let prepared = learner.prepare(&rollout);
+            let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
+            let outputs =
+                learner.policy_outputs(&mut minibatch.batch, &learner.policy_parameters());
+            let action = learner.shape().action.clone();
+            let before = Policy::new(&action, &outputs, action.parameters());
+            minibatch.old_policy = before.clone();
+            let taken = &minibatch.taken;
+            minibatch.old_log_probability = before.log_probability(taken).values;
+            let (mixed, mut means) = (minibatch.advantages().to_vec(), Means::default());
+            Trpo::new(&config).step(&mut learner, &mut minibatch, mixed, &mut means).unwrap();
+            let share = means.get("step_share").unwrap();
+            let divergence = before.divergence(&learner.policy(&mut minibatch)).mean();
+            assert!(share > 0.0 && divergence <= radius, "radius {radius}: {divergence}");
+            // The damping takes a part of the form, and the search another.
+            let reached = divergence / (radius * share * share);
+            assert!((0.3..1.3).contains(&reached), "radius {radius}: {reached} of it, {share}");
+        }
+    }
 }

@@ -211,6 +211,11 @@ mod tests {
             make(AlgorithmKind::PpoCost, Preset::Released).algorithm_settings.penalty_scale,
             0.1
         );
+        // The paper's value for the cost's weight; the released code's scenarios have their own.
+        assert_eq!(
+            make(AlgorithmKind::PpoCost, Preset::Paper).algorithm_settings.penalty_scale,
+            1.0
+        );
         assert_eq!(make(AlgorithmKind::Trpo, Preset::Released).learning.adam_epsilon, 1e-8);
         // A6: the released code takes its Fisher products over the whole minibatch.
         assert_eq!(

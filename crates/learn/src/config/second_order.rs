@@ -90,4 +90,31 @@ mod tests {
         .unwrap();
         assert_eq!((first.sampling.rollout, first.learning.recurrence), (32, None));
     }
+
+    /// A step is sixteen of the first order's rollouts here: what a multiplier gains a rollout it
+    /// gains sixteen times a step, what decays a rollout decays sixteen times, and a delay of ten
+    /// rollouts is over with the next step.
+    #[test]
+    fn multipliers_move_as_much_a_frame() {
+        use AlgorithmKind::{PpoLag, PpoPid, TrpoLag, TrpoPid};
+        let settings = |algorithm, preset| {
+            let env = EnvConfig::new("VolcanicVentureLevel1-v0");
+            TrainConfig::new(algorithm, preset, env).unwrap().algorithm_settings
+        };
+        let close =
+            |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
+        for algorithm in [TrpoLag, TrpoPid] {
+            let paper = settings(algorithm, Preset::Paper);
+            close(paper.multiplier_rate, 0.16);
+            assert_eq!((paper.pid_gains.0, paper.pid_gains.2), (0.1, 0.01));
+            close(paper.pid_gains.1, 0.16);
+            close(paper.pid_decay, 0.44012666865176565);
+            assert_eq!(paper.pid_delay, 1);
+        }
+        for algorithm in [PpoLag, PpoPid] {
+            let paper = settings(algorithm, Preset::Paper);
+            assert_eq!((paper.multiplier_rate, paper.pid_gains), (0.01, (0.1, 0.01, 0.01)));
+            assert_eq!((paper.pid_decay, paper.pid_delay), (0.95, 10));
+        }
+    }
 }

@@ -131,10 +131,7 @@ impl<'a> Examiner<'a> {
         episodes: usize,
     ) -> Result<Option<Vec<(Episode, Trace)>>, LearnError> {
         let config: &TrainConfig = policy.config();
-        let seed = |episode: usize| {
-            Stream::new(config.seed, Purpose::EvaluatedWorlds, set.number(), episode as u64).bits()
-        };
-        let seeds: Vec<u64> = (0..episodes).map(seed).collect();
+        let seeds = seeds_of(config.seed, set, episodes);
         play_traced(
             stop,
             policy,
@@ -144,6 +141,13 @@ impl<'a> Examiner<'a> {
             config.learning.threads,
         )
     }
+}
+
+/// Seeds of the episodes of a set, in the run of a seed.
+fn seeds_of(run: u64, set: EpisodeSet, episodes: usize) -> Vec<u64> {
+    (0..episodes as u64)
+        .map(|episode| Stream::new(run, Purpose::EvaluatedWorlds, set.number(), episode).bits())
+        .collect()
 }
 
 /// The session's policy as it is.
@@ -158,4 +162,35 @@ fn policy_of(session: &mut Session) -> Result<TrainedPolicy, LearnError> {
         session.cost_terms,
     )?;
     Ok(policy.in_units_of(&session.learner.returns))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hasard_engine::math::Rng;
+
+    /// A policy picked for its luck in some episodes would be as lucky again in the same ones: those
+    /// that pick candidates, those that confirm, those of each closing and those of training are
+    /// all different.
+    #[test]
+    fn no_episode_is_of_two_sets() {
+        let sets = [
+            EpisodeSet::Candidates,
+            EpisodeSet::Confirmation,
+            EpisodeSet::Closing(0),
+            EpisodeSet::Closing(1),
+            EpisodeSet::Closing(4),
+        ];
+        let mut all: Vec<u64> = sets.iter().flat_map(|&set| seeds_of(7, set, 200)).collect();
+        // As a batch of worlds deals them to its lanes.
+        let training = Stream::new(7, Purpose::Worlds, 0, 0).bits();
+        for lane in 0..32 {
+            let mut seeds = Rng::for_lane(training, lane);
+            all.extend((0..200).map(|_| seeds.next_u64()));
+        }
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!((count, all.len()), (7400, 7400));
+    }
 }

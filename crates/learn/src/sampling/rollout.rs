@@ -206,3 +206,17 @@ impl Rollout {
         self.parts.iter().flat_map(|part| part.versions.iter().copied()).min().unwrap_or(0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rollout is as old as the oldest weights that acted in any step of any part.
+    #[test]
+    fn a_rollout_is_as_old_as_its_oldest_step() {
+        let part = |versions: &[u64]| Part { versions: versions.to_vec(), ..Part::default() };
+        let rollout = |parts: &[&[u64]]| Rollout { parts: parts.iter().map(|v| part(v)).collect() };
+        assert_eq!(rollout(&[&[3, 5], &[4, 4]]).oldest_version(), 3);
+        assert_eq!(rollout(&[&[6, 6], &[4, 7]]).oldest_version(), 4);
+    }
+}

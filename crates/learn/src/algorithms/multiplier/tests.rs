@@ -249,6 +249,26 @@ fn multipliers_stay_within_their_bounds() {
     assert_eq!(lagrange.values()[0], 0.01);
 }
 
+/// A limit holds the integral of a PID too, so that it has nothing to unwind: after a hundred
+/// updates far above the budget the first one below it lowers the multiplier.
+#[test]
+fn a_limited_integral_does_not_wind_up() {
+    let limited = |gain: f64| AlgorithmConfig {
+        multiplier_limit: Some(2.0),
+        pid_gains: (gain, 1.0, 0.0),
+        pid_initial: 0.0,
+        ..settings()
+    };
+    let mut pid = Pid::all(&limited(0.5), 1);
+    (0..100).for_each(|_| pid.update(&[signal(1.0)]));
+    assert_eq!(pid.values()[0], 2.0);
+    let mut integral = Pid::all(&limited(0.0), 1);
+    (0..100).for_each(|_| integral.update(&[signal(1.0)]));
+    integral.update(&[signal(0.0)]);
+    let expected = 2.0 - 50.0 / 525.0;
+    assert!((integral.values()[0] - expected).abs() < 1e-12, "{:?}", integral.values());
+}
+
 #[test]
 fn saved_multipliers_come_back_as_what_they_were() {
     for mut multipliers in [Lagrange::all(&settings(), 2), Pid::all(&settings(), 2)] {
