@@ -74,6 +74,25 @@ def test_wrappers_count_costs() -> None:
     assert unsafe
 
 
+def test_saute_counts_by_its_defaults() -> None:
+    """Sootla et al. 2022, equation 3: z' = (z - c / d) / gamma, with d the budget of 50 times the mean of gamma^t over 525 steps."""
+    from hasard_rs.wrappers import Saute
+
+    env = Saute(hasard_rs.make("hasard/PrecipicePlungeLevel1-v0", resolution="64x48"))
+    _, info = env.reset(seed=0)
+    assert info["safety_state"] == 1.0
+    each, state, costs = 50.0 * sum(0.99**step for step in range(525)) / 525.0, 1.0, 0
+    for _ in range(100):
+        _, reward, terminated, _, info = env.step([0, 1, 0, 1])
+        state = (state - info["cost"] / each) / 0.99
+        costs += info["cost"] > 0
+        assert info["safety_state"] == pytest.approx(state, rel=1e-9)
+        assert (reward == -1.0) == (state <= 0.0)
+        if terminated:
+            break
+    assert costs >= 2 and state < 0.0
+
+
 def test_pettingzoos_own_tests() -> None:
     pettingzoo_test = pytest.importorskip("pettingzoo.test")
     from hasard_rs.pettingzoo import parallel_env

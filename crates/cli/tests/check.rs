@@ -14,7 +14,8 @@ fn write_script(path: &Path, text: &str) {
 
 /// What `./check` prints last and whether it succeeds, in a folder of its own.
 fn check(name: &str, cargo_test: &str, python_check: &str) -> (String, bool) {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("check-{name}"));
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join(format!("check-{}-{name}", std::process::id()));
     let real = std::fs::read_to_string("../../check").unwrap();
     write_script(&folder.join("check"), &real);
     write_script(

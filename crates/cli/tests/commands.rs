@@ -450,7 +450,10 @@ fn a_measurement_of_beginnings_alone_says_so() {
 fn agents_of_the_zoo_are_part_of_the_program() {
     let folder = Folder::new("zoo");
     let program = folder.0.join("alone");
-    std::fs::copy(env!("CARGO_BIN_EXE_hasard"), &program).unwrap();
+    // By another process: a child of another test's thread could hold open what this one writes,
+    // and then nothing may run it.
+    let copied = Command::new("cp").arg(env!("CARGO_BIN_EXE_hasard")).arg(&program).status();
+    assert!(copied.unwrap().success());
     let elsewhere = folder.0.join("elsewhere");
     std::fs::create_dir(&elsewhere).unwrap();
     let mut command = Command::new(&program);

@@ -7,6 +7,7 @@
 
 use serde_json::Value;
 use std::fs::{self, File};
+use std::io::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
@@ -120,7 +121,8 @@ fn rows(run: &Path) -> usize {
 fn full() -> Option<File> {
     let full = File::options().write(true).open("/dev/full").ok();
     if full.is_none() {
-        eprintln!("skipped: this system has no /dev/full");
+        // Past the capture of the test runner: ./check counts it.
+        let _ = writeln!(std::io::stderr(), "skipped: this system has no /dev/full");
     }
     full
 }

@@ -110,6 +110,49 @@ fn the_papers_experiments_have_their_sizes() {
     assert!(error.contains("`mian`") && error.contains("main, safety-bounds"), "{error}");
 }
 
+/// The grids of the paper's section 5 and its appendices: bounds of half, whole and one and a half
+/// times the budget, four scales of the cost, what is observed, and hard constraints.
+#[test]
+fn the_papers_experiments_ask_for_its_grids() {
+    // All values that an experiment gives an option in a scenario, in their order.
+    let asked = |name: &str, scenario: &str, option: &str| {
+        let mut values: Vec<String> = Vec::new();
+        for job in paper::experiment(name).unwrap().jobs().unwrap() {
+            let line = job.command_line("hasard");
+            if line.contains(&format!(" train {scenario}Level")) {
+                let mut words = line.split(' ').skip_while(|word| *word != format!("--{option}"));
+                let value = words.nth(1).unwrap_or("none").to_string();
+                if !values.contains(&value) {
+                    values.push(value);
+                }
+            }
+        }
+        values
+    };
+    for (scenario, bounds) in [
+        ("ArmamentBurden", ["25", "50", "75"]),
+        ("VolcanicVenture", ["25", "50", "75"]),
+        ("RemedyRush", ["2.5", "5", "7.5"]),
+        ("CollateralDamage", ["2.5", "5", "7.5"]),
+        ("PrecipicePlunge", ["25", "50", "75"]),
+        ("DetonatorsDilemma", ["2.5", "5", "7.5"]),
+    ] {
+        assert_eq!(asked("safety-bounds", scenario, "safety-budget"), bounds, "{scenario}");
+        assert_eq!(asked("cost-scale", scenario, "cost-scale"), ["0.1", "0.5", "1", "2"]);
+    }
+    assert_eq!(asked("depth", "PrecipicePlunge", "observation"), ["rgb", "rgb+depth"]);
+    assert_eq!(asked("segmentation", "ArmamentBurden", "observation"), ["rgb", "segmented"]);
+    assert_eq!(asked("curriculum", "RemedyRush", "curriculum"), ["1,2,3", "none"]);
+    let lines = |name: &str| -> Vec<String> {
+        let jobs = paper::experiment(name).unwrap().jobs().unwrap();
+        jobs.iter().map(|job| format!("{} ", job.command_line("hasard"))).collect()
+    };
+    assert!(lines("hard").iter().all(|line| line.contains(" --hard ")));
+    assert!(lines("main").iter().all(|line| !line.contains(" --hard ")));
+    let full = lines("full-actions");
+    assert_eq!(full.iter().filter(|line| line.contains(" --full-actions ")).count(), 30);
+}
+
 #[test]
 fn a_file_may_change_an_experiment_of_the_paper() {
     let mut sweep =
@@ -194,10 +237,20 @@ fn jobs(out: &Path, seeds: &str) -> Vec<Job> {
     Sweep::parse(&text).unwrap().jobs().unwrap()
 }
 
+/// Writes a program. Another process does: while this one had the file open for writing, a child of
+/// another test's thread could begin, with the file open in it too, and nothing runs a file that is
+/// open for writing somewhere.
+#[cfg(unix)]
+fn write_program(path: &Path, script: &str) {
+    let command = "printf %s \"$1\" > \"$0\" && chmod 755 \"$0\"";
+    let written =
+        std::process::Command::new("sh").args(["-c", command]).arg(path).arg(script).status();
+    assert!(written.unwrap().success());
+}
+
 #[cfg(unix)]
 #[test]
 fn jobs_run_are_resumed_and_skipped() {
-    use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new("run");
     let program = folder.0.join("trainer");
     // The last argument but for --resume is the directory. Seed 2 stops half-way at first; seed 3
@@ -206,8 +259,7 @@ fn jobs_run_are_resumed_and_skipped() {
                   echo \"args $*\"\nmkdir -p \"$dir\"; echo '{}' > \"$dir/config.json\"\n\
                   case \"$dir\" in\n*/seed2) if [ -z \"$resume\" ]; then echo '{\"frames\":50}' > \"$dir/metrics.jsonl\"; printf '{\"fra' >> \"$dir/metrics.jsonl\"; exit 1; fi;;\n\
                   */seed3) echo 'out of luck' >&2; exit 2;; esac\necho '{\"frames\":100}' >> \"$dir/metrics.jsonl\"\n";
-    std::fs::write(&program, script).unwrap();
-    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    write_program(&program, script);
     let jobs = jobs(&folder.0.join("out"), "[1, 2, 3]");
     let first = run_jobs(&program, &jobs, 2, NEVER, |_, _| {});
     assert_eq!((first.skipped, first.finished, first.failed.len()), (0, 1, 2), "{first:?}");
@@ -242,14 +294,12 @@ fn jobs_run_are_resumed_and_skipped() {
 #[cfg(unix)]
 #[test]
 fn finished_runs_are_evaluated_once() {
-    use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new("evaluate");
     let program = folder.0.join("trainer");
     let script = "#!/bin/sh\nif [ $1 = eval ]; then for k in $(seq $4); do echo \"{\\\"asked\\\":\\\"$*\\\"}\"; done; exit 0; fi\n\
                   for a in \"$@\"; do case \"$a\" in */seed*) dir=$a;; esac; done\nmkdir -p \"$dir\"; echo '{}' > \"$dir/config.json\"\n\
                   echo '{\"frames\":100}' >> \"$dir/metrics.jsonl\"\n";
-    std::fs::write(&program, script).unwrap();
-    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    write_program(&program, script);
     let text = |evaluate: u32| {
         let out = folder.0.join("out");
         format!(
@@ -293,14 +343,12 @@ fn finished_runs_are_evaluated_once() {
 #[cfg(unix)]
 #[test]
 fn a_sweep_that_is_stopped_leaves_no_process() {
-    use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new("stopped");
     let program = folder.0.join("trainer");
     // Seed 1 listens, as a training does; seed 2 is deaf.
     let script = "#!/bin/sh\nfor a in \"$@\"; do case \"$a\" in */seed*) dir=$a;; esac; done\nmkdir -p \"$dir\"\n\
                   echo $$ > \"$dir/process\"\ncase \"$dir\" in */seed1) cat > /dev/null; echo stopped; exit 143;; esac\nexec sleep 600\n";
-    std::fs::write(&program, script).unwrap();
-    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    write_program(&program, script);
     let jobs = jobs(&folder.0.join("out"), "[1, 2, 3]");
     let (soon, now) = (AtomicBool::new(false), AtomicBool::new(false));
     let begun = |job: &Job| {

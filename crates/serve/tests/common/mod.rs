@@ -32,13 +32,30 @@ impl Agents for Nobody {
     }
 }
 
+/// A folder for a test, which is gone after it.
+pub struct Folder(PathBuf);
+
+impl std::ops::Deref for Folder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
 /// A folder for a test, emptied.
-pub fn folder(name: &str) -> PathBuf {
+pub fn folder(name: &str) -> Folder {
     let folder = std::env::temp_dir().join(format!("hasard-serve-{}-{name}", std::process::id()));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(folder.join("runs")).unwrap();
     std::fs::create_dir_all(folder.join("human")).unwrap();
-    folder
+    Folder(folder)
 }
 
 /// Serves `FOLDER/runs`, and episodes in `FOLDER/human`, until the test's process ends.
