@@ -125,6 +125,8 @@ impl EnvOptions {
         let frames = |options: &EnvOptions| {
             (options.size, options.observation, options.layout, options.frame_stack)
         };
+        let places =
+            |options: &EnvOptions| options.maps.as_ref().map(|maps| maps.place().to_owned());
         [
             ("rules", self.rules == other.rules),
             ("early_creatures", self.early_creatures == other.early_creatures),
@@ -135,6 +137,7 @@ impl EnvOptions {
             ("max_episode_steps", self.max_episode_steps == other.max_episode_steps),
             ("the kind of observation", frames(self) == frames(other)),
             ("the map", self.map == other.map),
+            ("the folder of maps", places(self) == places(other)),
         ]
         .into_iter()
         .find_map(|(name, same)| (!same).then_some(name))

@@ -47,10 +47,13 @@ pub fn kind(ids: &[EnvId], options: &EnvOptions, autoreset: Autoreset) -> String
     let EnvOptions {
         rules,
         early_creatures,
+        test_seeds,
         hard,
         full_actions,
         frame_skip,
         max_episode_steps,
+        maps,
+        map,
         ..
     } = options;
     let early = if *early_creatures { " early" } else { "" };
@@ -59,8 +62,19 @@ pub fn kind(ids: &[EnvId], options: &EnvOptions, autoreset: Autoreset) -> String
         format!("{id}{file}")
     };
     let ids = ids.iter().map(named).collect::<Vec<_>>().join(",");
+    // As before where there are none, so that what was saved without is still taken.
+    let mut of_map = String::new();
+    if *test_seeds {
+        of_map += " test_seeds";
+    }
+    if let Some(maps) = maps {
+        of_map += &format!(" maps={}", maps.place().display());
+    }
+    if let Some(map) = map {
+        of_map += &format!(" map={}", hasard_envs::fingerprint(&format!("{map:?}")));
+    }
     format!(
-        "{ids} {rules:?}{early} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}"
+        "{ids} {rules:?}{early}{of_map} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}"
     )
 }
 

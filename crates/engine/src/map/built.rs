@@ -1,7 +1,7 @@
 //! The built map: cross-referenced lists in fixed point, the BSP tree and the blockmap. Immutable
 //! once built.
 
-use super::{Blocks, Locator, TextureName};
+use super::{Blocks, Locator, TextureName, special};
 use crate::math::{Angle, Fixed};
 
 /// Index into [`Map::textures`].
@@ -107,6 +107,14 @@ pub struct Sector {
     pub bounds: [Fixed; 4],
     /// Indices of the lines that touch it.
     pub lines: Vec<u32>,
+}
+
+impl Sector {
+    /// Whether its floor takes health before any script says so.
+    #[must_use]
+    pub fn hurts(&self) -> bool {
+        self.special & 0xFF == special::LAVA
+    }
 }
 
 /// A thing that the map places.

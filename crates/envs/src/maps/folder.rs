@@ -57,6 +57,12 @@ impl Maps {
         }
     }
 
+    /// The folder, or the one file for whatever is played.
+    #[must_use]
+    pub fn place(&self) -> &Path {
+        &self.place
+    }
+
     /// The same, saying of each map that is read what its file holds that is not played or drawn as
     /// it says: one line, once.
     #[must_use]

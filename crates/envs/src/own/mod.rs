@@ -33,6 +33,8 @@ mod textures;
 mod tiles;
 mod tree;
 mod walkers;
+#[cfg(test)]
+mod world_tests;
 
 pub use mistakes::Mistake;
 pub use open::open;

@@ -45,7 +45,7 @@ pub(super) struct Plan {
 }
 
 /// Where the world comes from.
-#[derive(Clone, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub(super) enum MapPlan {
     Tiles(Tiles),
     /// That of a built-in scenario at a level.
@@ -55,7 +55,7 @@ pub(super) enum MapPlan {
 }
 
 /// A map of a WAD or of a UDMF text.
-#[derive(Debug)]
+#[derive(PartialEq, Debug)]
 pub(super) struct DrawnMap {
     pub source: hasard_engine::map::MapSource,
     /// What its file holds that is not played as it says.
@@ -63,7 +63,7 @@ pub(super) struct DrawnMap {
 }
 
 /// A map of square tiles.
-#[derive(Clone, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub(super) struct Tiles {
     /// Side of a tile, map units.
     pub side: i32,
@@ -126,7 +126,7 @@ pub(super) enum GenerateKind {
 }
 
 /// A part of the map with a name.
-#[derive(Clone, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub(super) struct Zone {
     pub name: String,
     /// A rectangle: west, south, east, north.
@@ -187,7 +187,7 @@ pub(super) enum Goal {
 }
 
 /// Things that appear.
-#[derive(Clone, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub(super) struct Spawn {
     pub name: Option<String>,
     pub at: usize,

@@ -16,15 +16,27 @@ const TRIES: u32 = 200;
 /// Most slots of things in a world: what more would come is left out.
 const MOST_THINGS: usize = 4_000;
 
+/// The thing id of what stood in the map before the rules opened: nobody asks for it by the name of
+/// a spawn, and no spawn brings it back.
+const OF_THE_MAP: i32 = i32::MAX;
+
 impl OwnRules {
     /// The map opens, and the agent enters.
     pub(super) fn open(&mut self, program: &Program, world: &mut World) {
+        disown(program, world);
         if let Some(layout) = &program.layout {
             layout.apply(world, program.test_seeds);
         }
         for tile in &program.loose {
-            let height = world.rng.between(tile.floor[0], tile.floor[1]);
-            world.sector_mut(tile.sector).floor = Fixed::from_int(height);
+            let height = Fixed::from_int(world.rng.between(tile.floor[0], tile.floor[1]));
+            // What a layout has closed from floor to ceiling stays closed.
+            let state = world.sector_mut(tile.sector);
+            if program.layout.is_none() || state.floor < state.ceiling {
+                state.floor = height;
+            }
+        }
+        if program.layout.is_some() || !program.loose.is_empty() {
+            stand_up(world);
         }
         for (tag, amplitude, frequency) in &program.waggles {
             world.floor_waggle(*tag, *amplitude, *frequency, 0, 0);
@@ -60,10 +72,8 @@ impl OwnRules {
         world: &mut World,
     ) -> Option<ActorId> {
         let spawn = &program.plan.spawns[usize::from(index)];
-        if world.actors.len() >= MOST_THINGS
-            || spawn.kinds.is_empty()
-            || (spawn.most < 500 && living(spawn, world) >= spawn.most)
-        {
+        let full = world.actors.len() >= MOST_THINGS && world.living().count() >= MOST_THINGS;
+        if full || spawn.kinds.is_empty() || living(spawn, world) >= spawn.most {
             return None;
         }
         let kind = drawn_kind(spawn, world);
@@ -89,6 +99,31 @@ impl OwnRules {
             unplaced.fetch_or(1 << index, Ordering::Relaxed);
         }
         None
+    }
+}
+
+/// What stands in the map already is no spawn's, whatever ids it was drawn with.
+fn disown(program: &Program, world: &mut World) {
+    let taken = |kind: ActorKind, tid: i32| {
+        (1..=64).contains(&tid)
+            || tid == 0 && program.comes_back.iter().any(|(own, _)| *own == kind)
+    };
+    let all: Vec<_> = world
+        .living()
+        .filter(|(_, actor)| taken(actor.kind, actor.tid))
+        .map(|(id, _)| id)
+        .collect();
+    for id in all {
+        world.get_mut(id).into_iter().for_each(|actor| actor.tid = OF_THE_MAP);
+    }
+}
+
+/// Everything stands on its floor again: floors have been set anew beneath it.
+fn stand_up(world: &mut World) {
+    let all: Vec<_> = world.living().map(|(id, actor)| (id, actor.x, actor.y)).collect();
+    for (id, x, y) in all {
+        let floor = world.sector(world.map.sector_at(x, y)).floor;
+        world.set_position(id, x, y, floor);
     }
 }
 

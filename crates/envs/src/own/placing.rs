@@ -29,6 +29,9 @@ pub(super) fn drawn_place(
     if !rock && !world.map.is_inside(x, y) {
         return None;
     }
+    if matches!(place, Place::Free) && program.hurts[world.map.sector_at(x, y).0 as usize] {
+        return None;
+    }
     let z = match height {
         Height::At(z) => Fixed::from_int(z),
         Height::Above(above) => {

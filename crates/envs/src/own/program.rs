@@ -5,7 +5,7 @@ use super::generate::Layout;
 use super::model::{Goal, MapPlan, Place, Plan, Trigger, When};
 use crate::EnvError;
 use crate::scenarios::common::stage::Area;
-use hasard_engine::map::{Map, SectorId};
+use hasard_engine::map::{Map, Sector, SectorId};
 use hasard_engine::math::Fixed;
 use hasard_engine::world::ActorKind;
 
@@ -83,6 +83,8 @@ pub(super) struct Program {
     /// The areas of each zone, and those where nothing hurts.
     pub areas: Vec<Vec<Area>>,
     pub free: Vec<Area>,
+    /// Of each sector, whether its floor hurts.
+    pub hurts: Vec<bool>,
     /// The tags of each zone.
     pub tags: Vec<Vec<i32>>,
     /// Areas of the start, one of which is drawn where there are several.
@@ -118,6 +120,7 @@ impl Program {
             rectangles: Vec::new(),
             areas: vec![Vec::new(); plan.zones.len()],
             free: Vec::new(),
+            hurts: map.sectors.iter().map(Sector::hurts).collect(),
             tags: vec![Vec::new(); plan.zones.len()],
             starts: Vec::new(),
             loose: Vec::new(),

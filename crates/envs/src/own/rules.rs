@@ -180,6 +180,8 @@ impl OwnRules {
         }
         for (zone, height, speed) in &when.floors {
             for tag in &program.tags[usize::from(*zone)] {
+                // A door that is to close while it opens does, and a floor that swings stops.
+                world.stop_floors(*tag);
                 world.floor_move_to_value(*tag, *speed, *height);
             }
         }
@@ -192,6 +194,8 @@ impl OwnRules {
             && !std::mem::replace(&mut self.moved, true)
         {
             move_player(program, place, super::model::Height::Above(0), &mut self.tries, world);
+            // A fall is counted from there.
+            self.peak = world.get(world.players[0].actor).map_or(self.peak, |body| body.z);
             self.look_around(program, world, outcome);
         }
     }
@@ -295,6 +299,21 @@ impl OwnRules {
         next
     }
 
+    /// Reads all events from one on. What the rules did, such as hurt the agent, has happened too.
+    fn read_all(
+        &mut self,
+        program: &Program,
+        from: usize,
+        world: &mut World,
+        outcome: &mut Outcome,
+    ) {
+        let mut read = from;
+        while read < world.events.len().min(MOST_EVENTS) {
+            read = self.read_events(program, read, world, outcome);
+            self.follow_changes(program, world, outcome);
+        }
+    }
+
     /// What was taken or killed comes back, if it is of those that do.
     fn bring_back(&mut self, program: &Program, kind: ActorKind, tid: i32, world: &mut World) {
         let spawn = match tid {
@@ -344,8 +363,7 @@ impl OwnRules {
     /// What the agent does with its body.
     fn read_player(&mut self, program: &Program, world: &mut World, outcome: &mut Outcome) {
         let player = &world.players[0];
-        let (jumping, using, on_ground) =
-            (player.jump_tics < 0, player.buttons.any(Buttons::USE), player.on_ground);
+        let (jumping, using) = (player.jump_tics < 0, player.buttons.any(Buttons::USE));
         if jumping && !std::mem::replace(&mut self.jumping, jumping) {
             self.dispatch(program, Occasion::Jump, 1.0, world, outcome, |_| true);
         }
@@ -354,6 +372,8 @@ impl OwnRules {
         }
         (self.jumping, self.using) = (jumping, using);
         if let Some(body) = world.get(world.players[0].actor) {
+            // By the body: the player's own flag stands still while an episode's input does.
+            let on_ground = body.z <= body.floor_z || body.flags.any(ActorFlags::ON_ACTOR);
             self.peak = if on_ground { body.z } else { self.peak.max(body.z) };
         }
         if program.has(Occasion::In) {
@@ -460,19 +480,20 @@ impl Rules for OwnRules {
             self.moved = false;
             self.dispatch(&program, Occasion::Start, 1.0, world, outcome, |_| true);
         }
-        let mut read = self.read_events(&program, 0, world, outcome);
+        let read = self.read_events(&program, 0, world, outcome);
         self.look_around(&program, world, outcome);
         self.read_player(&program, world, outcome);
         self.read_clock(&program, world, outcome);
         self.follow_changes(&program, world, outcome);
-        // What the rules did, such as hurt the agent, has happened too.
-        while read < world.events.len().min(MOST_EVENTS) {
-            read = self.read_events(&program, read, world, outcome);
-            self.follow_changes(&program, world, outcome);
-        }
+        self.read_all(&program, read, world, outcome);
         if program.walkers {
             walkers::lead(&mut self.walkers, &program, world);
         }
+    }
+
+    fn last_words(&mut self, world: &mut World, outcome: &mut Outcome) {
+        let program = Arc::clone(&self.program);
+        self.read_all(&program, 0, world, outcome);
     }
 
     fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {

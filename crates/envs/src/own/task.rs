@@ -96,24 +96,61 @@ pub fn check(text: &str) -> Checked {
                 }
             }
         }
+        // What a level, the hard constraint or a rule set has otherwise is tried as well.
+        let settings = settings(levels);
+        let differs = |at: usize, same: fn(&Plan, &Plan) -> bool| {
+            let own = &plans[index(settings[at].1)];
+            (!settings[..at].iter().any(|(_, other)| same(&plans[index(*other)], own)))
+                .then_some(own)
+        };
         if !mistakes.any() {
-            for level in 1..=levels.max(1) {
-                try_map(&plans[index(Setting::new(RuleSet::Paper, false, level))], &mut mistakes);
+            for (at, (name, _)) in settings.iter().enumerate() {
+                let same =
+                    |one: &Plan, other: &Plan| one.map == other.map && one.zones == other.zones;
+                if let Some(plan) = differs(at, same) {
+                    try_map(plan, name, &mut mistakes);
+                }
             }
         }
         if !mistakes.any() {
             checks::warn(&plans, &names, &mut mistakes);
-            for level in 1..=levels.max(1) {
-                try_opening(
-                    &plans[index(Setting::new(RuleSet::Paper, false, level))],
-                    names.counters.len(),
-                    &mut mistakes,
-                );
+            for at in 0..settings.len() {
+                let same = |one: &Plan, other: &Plan| {
+                    (&one.map, &one.zones, &one.spawns) == (&other.map, &other.zones, &other.spawns)
+                };
+                if let Some(plan) = differs(at, same) {
+                    try_opening(plan, names.counters.len(), &mut mistakes);
+                }
             }
             read = Some(Read { levels, names, plans });
         }
     }
     Checked { mistakes: mistakes.into_list(), read }
+}
+
+/// Every setting of a task with so many levels, and how messages name it: nothing where it is the
+/// usual one.
+fn settings(levels: u8) -> Vec<(String, Setting)> {
+    let mut all = Vec::new();
+    for rules in RuleSet::ALL {
+        for hard in [false, true] {
+            for level in 1..=levels.max(1) {
+                let mut name = String::new();
+                if levels > 1 {
+                    name += &format!("level {level}, ");
+                }
+                if rules != RuleSet::Paper {
+                    name += &format!("--rules {}, ", rules.name());
+                }
+                if hard {
+                    name += "--hard, ";
+                }
+                let name = name.strip_suffix(", ").map(|name| format!("{name}: "));
+                all.push((name.unwrap_or_default(), Setting::new(rules, hard, level)));
+            }
+        }
+    }
+    all
 }
 
 /// Number of levels: the highest that the file speaks of, 0 if it speaks of none.
@@ -146,7 +183,7 @@ fn known_keys(node: &Node, what: &str, known: &[&str], mistakes: &mut Mistakes) 
 }
 
 /// Builds a map, so that what cannot be built is found before anybody plays.
-fn try_map(plan: &Plan, mistakes: &mut Mistakes) {
+fn try_map(plan: &Plan, setting: &str, mistakes: &mut Mistakes) {
     let built = map_of(plan).and_then(|source| {
         Map::build(&source, &plan.name, &[])
             .map_err(|error| EnvError::Map { why: format!("the map cannot be built: {error}") })
@@ -156,7 +193,7 @@ fn try_map(plan: &Plan, mistakes: &mut Mistakes) {
         has_start(&World::new(Arc::new(map), 0))
     });
     if let Err(error) = ready {
-        mistakes.add(0, error.to_string());
+        mistakes.add(0, format!("{setting}{error}"));
     }
 }
 

@@ -51,7 +51,7 @@ pub struct Env {
     pub(crate) last_costs: [f64; MOST_TERMS],
     pub(crate) eye: Eye,
     /// What happened in the last step, if that is asked for.
-    happenings: Vec<Happening>,
+    pub(super) happenings: Vec<Happening>,
 }
 
 impl Env {
@@ -169,23 +169,29 @@ impl Env {
             (game.outcome.reward, game.outcome.costs) = (0.0, [0.0; MOST_TERMS]);
         }
         self.happenings.clear();
+        let mut note = |world: &World| {
+            if self.blueprint.options.events {
+                let noted = world.events.iter().filter_map(|event| Happening::of(*event, world));
+                self.happenings.extend(noted);
+            }
+        };
         for _ in 0..self.blueprint.options.frame_skip {
-            game.tic_noted(command, |world| {
-                if self.blueprint.options.events {
-                    let noted =
-                        world.events.iter().filter_map(|event| Happening::of(*event, world));
-                    self.happenings.extend(noted);
-                }
-            });
+            game.tic_noted(command, &mut note);
             if game.over() || game.world.tic >= self.blueprint.end_tic {
                 break;
             }
         }
-        let over = game.over();
-        game.rules.end_step(&game.world, over, &mut game.outcome);
         let limit = self.blueprint.options.max_episode_steps;
         let time_out = game.world.tic >= self.blueprint.end_tic
             || limit.is_some_and(|limit| self.totals.steps + 1 >= limit);
+        // A rocket's first flight step comes after the scripts: it may kill the agent with no
+        // script left to hear of it.
+        if (time_out || game.over()) && !game.world.events.is_empty() {
+            game.rules.last_words(&mut game.world, &mut game.outcome);
+            note(&game.world);
+        }
+        let over = game.over();
+        game.rules.end_step(&game.world, over, &mut game.outcome);
         // What the rules finish in the last tic is no time-out, though no tic follows in which the
         // episode would be left.
         let terminated = over || (time_out && game.outcome.finished);

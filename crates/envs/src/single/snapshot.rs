@@ -56,6 +56,7 @@ impl Env {
         (self.seed, self.totals) = (snapshot.seed, snapshot.totals);
         (self.last, self.last_costs) = (snapshot.last, snapshot.last_costs);
         self.eye.remember(&snapshot.memory);
+        self.happenings.clear();
         Ok(())
     }
 }

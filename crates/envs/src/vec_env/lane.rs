@@ -319,7 +319,8 @@ impl Lane {
                 if step.ended() {
                     self.ended = Some(step);
                     let episode = Episode { lane: self.index, ..self.env.episode() };
-                    outbox.panic = unreported(&*self.env, &episode);
+                    // One box may serve many lanes: the first that says so counts.
+                    outbox.panic = outbox.panic.take().or_else(|| unreported(&*self.env, &episode));
                     outbox.episodes.push(episode);
                 }
                 (step, true)

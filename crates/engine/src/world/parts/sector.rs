@@ -1,6 +1,6 @@
 //! What changes of a sector.
 
-use crate::map::{Sector, TextureId, special};
+use crate::map::{Sector, TextureId};
 use crate::math::Fixed;
 
 /// Damage to players who stand on a floor.
@@ -79,9 +79,10 @@ impl SectorDamage {
     /// What a sector's floor does as the map starts it. Lava hurts before any script: 8 points
     /// every 32 tics, through any suit.
     pub(crate) fn new(sector: &Sector) -> SectorDamage {
-        match sector.special & 0xFF {
-            special::LAVA => SectorDamage { amount: 8, interval: 32, leak: 256 },
-            _ => SectorDamage::default(),
+        if sector.hurts() {
+            SectorDamage { amount: 8, interval: 32, leak: 256 }
+        } else {
+            SectorDamage::default()
         }
     }
 }

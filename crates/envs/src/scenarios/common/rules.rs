@@ -27,6 +27,10 @@ pub trait Rules: fmt::Debug + Send + Sync {
     /// The script phase of a tic: what the map's scripts do after everything has moved.
     fn script(&mut self, world: &mut World, outcome: &mut Outcome);
 
+    /// The episode ends: what happened after the last script phase, which no further one will read,
+    /// is in the world's events. Published scripts never hear of it.
+    fn last_words(&mut self, _world: &mut World, _outcome: &mut Outcome) {}
+
     /// A policy step is over, and perhaps the episode by death or the rules: counts what is counted
     /// by the step.
     fn end_step(&mut self, _world: &World, _over: bool, _outcome: &mut Outcome) {}
