@@ -59,7 +59,7 @@ pub struct Summary {
 /// ones resumed. A job that fails does not stop the others. What a process prints goes to the job's
 /// log. `report` hears of every event.
 ///
-/// Several processes share the cores out: each is given its number of threads, unless its job
+/// Several processes share the cores: each is given its number of threads, unless its job
 /// chooses one. Otherwise every one of them would take all cores, and they would wait for each
 /// other.
 ///

@@ -3,7 +3,7 @@
 //! ```toml
 //! experiment = "main"              # optional: begin with an experiment of the paper and choose from it below
 //! out = "runs/main"                # default "runs"
-//! parallel = 2                     # runs at a time, default 1; they share the cores out
+//! parallel = 2                     # runs at a time, default 1; they share the cores
 //! evaluate = 100                   # episodes of each finished run's agent, kept as eval.jsonl; default none
 //! frames = 2_000_000               # of each run
 //! seeds = [1, 2, 3]                # default [1]

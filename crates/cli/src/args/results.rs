@@ -100,7 +100,7 @@ pub struct ClaimArgs {
     /// The rule set of the claim  [default: the run's]
     #[arg(long, value_enum)]
     pub rules: Option<Rules>,
-    /// Number of episodes; scoreboards list claims of 200 and more
+    /// Number of episodes; scoreboards list claims of 200, 1,000 or 10,000 alone
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub episodes: u32,
     /// The command that trained the agent  [default: from the run's settings]

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 /// `hasard train`.
 #[derive(Args, Debug, Clone)]
 pub struct TrainArgs {
-    /// Environment id
+    /// Environment id, or the file of a task of your own; several, with commas between, for one
+    /// agent of several tasks
     #[arg(value_parser = env_id)]
     pub env: String,
     /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
@@ -157,7 +158,7 @@ pub struct SweepArgs {
     /// Folder of the runs
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Runs at a time; they share the cores out
+    /// Runs at a time; they share the cores
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub parallel: Option<u16>,
     /// Preset of every run: quick, paper, released or tables

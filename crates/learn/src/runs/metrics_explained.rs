@@ -220,7 +220,7 @@ pub const METRICS: &[Metric] = &[
         "epochs",
         "",
         "",
-        "Passes made over a rollout. Fewer than asked for where target_kl ended them.",
+        "Epochs over a rollout. Fewer than asked for where target_kl ended them.",
     ),
     metric(
         "value_phase_loss",
