@@ -71,7 +71,7 @@ pub fn kind(ids: &[EnvId], options: &EnvOptions, autoreset: Autoreset) -> String
         of_map += &format!(" maps={}", maps.place().display());
     }
     if let Some(map) = map {
-        of_map += &format!(" map={}", hasard_envs::fingerprint(&format!("{map:?}")));
+        of_map += &format!(" map={}", hasard_envs::own::fingerprint(&format!("{map:?}")));
     }
     format!(
         "{ids} {rules:?}{early}{of_map} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}"

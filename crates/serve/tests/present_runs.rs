@@ -116,7 +116,6 @@ fn pages_follow_runs_that_are_resumed_replaced_renamed_and_deleted() {
         best.as_array().unwrap().iter().all(|row| !row["who"].as_str().unwrap().contains("seed 1")),
         "{best}"
     );
-    let _ = std::fs::remove_dir_all(folder);
 }
 
 /// Rows come late in a long evaluation, and the last one before the closing is over.
@@ -144,7 +143,6 @@ fn a_training_that_holds_its_run_is_at_work() {
     page.wait("let go", |runs| {
         runs["slow"]["state"] == "stopped" && runs["closing"]["state"] == "done"
     });
-    let _ = std::fs::remove_dir_all(folder);
 }
 
 /// To open a pipe that nobody writes into is to wait for ever.
@@ -170,5 +168,4 @@ fn a_pipe_in_a_files_place_is_passed_over() {
         assert!(ask(page.address, &format!("/api/curves?runs={id}&columns=fps"))[&id].is_object());
         assert!(ask(page.address, &format!("/api/heatmap?id={id}"))["error"].is_string());
     }
-    let _ = std::fs::remove_dir_all(folder);
 }

@@ -130,7 +130,7 @@ mod tests {
         let mut uniform = || (next(&mut stream) >> 11) as f64 / (1u64 << 53) as f64;
         let values: Vec<f64> = (0..100).map(|_| (0..12).map(|_| uniform()).sum()).collect();
         let mean = |values: &[f64]| Some(values.iter().sum::<f64>() / values.len() as f64);
-        let found = aggregate(&[values.clone()], mean).unwrap();
+        let found = aggregate(std::slice::from_ref(&values), mean).unwrap();
         let square = |value: &f64| (value - found.value).powi(2);
         let half = 1.984 * (values.iter().map(square).sum::<f64>() / 99.0).sqrt() / 10.0;
         let (low, high) = found.interval.unwrap();
