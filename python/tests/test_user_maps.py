@@ -48,6 +48,24 @@ def test_maps_have_the_programs_names(package: Path) -> None:
         hasard_rs.make("hasard/RemedyRushLevel1-v0", maps=folder)
 
 
+def test_a_saved_moment_stays_with_its_map(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = package / "hasard" / "envs"
+    theirs, builtin = (hasard_rs.make(ENV, resolution="64x48", maps=maps).unwrapped for maps in (folder, None))
+    theirs.reset(seed=1)
+    builtin.reset(seed=1)
+    moment, own = theirs.save(), builtin.save()
+    with pytest.raises(ValueError, match="saved from other worlds .*maps="):
+        builtin.load(moment)
+    with pytest.raises(ValueError, match="these are .*maps="):
+        theirs.load(own)
+    assert builtin.save() == own
+    monkeypatch.chdir(package)
+    again = hasard_rs.make(ENV, resolution="64x48", maps="hasard/envs").unwrapped
+    again.reset(seed=2)
+    again.load(moment)
+    assert again.save() == moment
+
+
 def test_auto_is_what_the_program_finds(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     theirs = seen(hasard_rs.make(ENV, resolution="64x48", maps=package / "hasard" / "envs"))
     monkeypatch.setenv("PYTHONPATH", f"{package}{os.pathsep}{os.environ.get('PYTHONPATH', '')}")

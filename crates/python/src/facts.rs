@@ -68,7 +68,8 @@ pub fn kind(ids: &[EnvId], options: &EnvOptions, autoreset: Autoreset) -> String
         of_map += " test_seeds";
     }
     if let Some(maps) = maps {
-        of_map += &format!(" maps={}", maps.place().display());
+        let place = maps.place().canonicalize().unwrap_or_else(|_| maps.place().to_owned());
+        of_map += &format!(" maps={}", place.display());
     }
     if let Some(map) = map {
         of_map += &format!(" map={}", hasard_envs::own::fingerprint(&format!("{map:?}")));
