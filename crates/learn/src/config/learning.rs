@@ -124,8 +124,8 @@ pub struct LearningConfig {
     pub adam_betas: (f64, f64),
     /// Adam's epsilon.
     pub adam_epsilon: f64,
-    /// Divergence of the policy from the one that acted, mean over the rollout after an epoch, beyond
-    /// which the rollout is learned from no further; `null` for all epochs in any case.
+    /// Divergence of the policy from the one that acted, mean over the rollout after an epoch,
+    /// beyond which the rollout is learned from no further; `null` for all epochs in any case.
     #[serde(default)]
     pub target_kl: Option<f64>,
     /// Learning rate of critics that are networks of their own; `null` for that of the policy. It
