@@ -294,3 +294,29 @@ def test_the_middle_half_is_rliable_s():
     # Of four the middle two; a quarter of six, rounded down, is one.
     assert iqm([100.0, 1.0, 3.0, -50.0]) == 2.0
     assert iqm([0.0, 2.0, 3.0, 5.0, 9.0, 99.0]) == (2 + 3 + 5 + 9) / 4
+
+
+def test_two_sets_of_runs_are_scored_beside_each_other(tmp_path: Path) -> None:
+    """Scores by hand: PPO returns 11 and random play 1, so 6 is 0.5 and 11 is 1; over the budget by the interval's end it is 0."""
+
+    def run(folder: str, seed: int, returned: float, cost: float, high: float | None = None) -> None:
+        path = tmp_path / folder / f"seed{seed}"
+        path.mkdir(parents=True)
+        (path / "config.json").write_text(json.dumps({"env": {"id": "A-v0"}, "seed": seed, "constraints": [{"budget": 5.0}]}))
+        ends = None if high is None else [0.0, high]
+        closing = {"episode_return": {"mean": returned}, "cost": {"mean": cost, "half_width": 0.5, "bootstrap": ends}}
+        (path / "selected.json").write_text(json.dumps({"closing": closing, "last": closing}))
+
+    (tmp_path / "random-A-v0-paper.jsonl").write_text('{"return":0.5,"cost":1}\n{"return":1.5,"cost":1}\n')
+    run("ppo", 1, 11.0, 50.0)
+    run("old", 1, 6.0, 4.0)
+    run("old", 2, 6.0, 4.6)
+    run("old", 3, 6.0, 4.0)
+    run("new", 1, 11.0, 4.5)
+    run("new", 2, 6.0, 4.0, high=4.9)
+    scored = tool("quick_old_new")
+    scales = scored.scales_of(tmp_path / "ppo", tmp_path)
+    assert scales == {"A-v0": (1.0, 11.0)}
+    text = scored.table(scored.runs_of(tmp_path / "old"), scored.runs_of(tmp_path / "new"), scales)
+    assert "| ALevel" not in text and "| A | 1, 2 | 6.0 @ 4.3 (1/2) | 0.25 | 8.5 @ 4.2 (2/2) | 0.75 |" in text
+    assert "Mean feasible score 0.25 and 0.75, a ratio of 3.00, 2.00 to inf" in text
