@@ -41,9 +41,14 @@ def score(run, scale):
     return (run[0] - chance) / (ppo - chance) if run[2] else 0.0
 
 
+def means(strata):
+    """Each side's mean over environments of the mean over seeds."""
+    return [statistics.fmean(statistics.fmean(pair[side] for pair in pairs) for pairs in strata.values()) for side in (0, 1)]
+
+
 def ratio(strata):
-    """The second side's mean over environments by the first's."""
-    old, new = (statistics.fmean(statistics.fmean(pair[side] for pair in pairs) for pairs in strata.values()) for side in (0, 1))
+    """The second side's mean by the first's."""
+    old, new = means(strata)
     return new / old if old > 0 else math.inf
 
 
@@ -64,7 +69,7 @@ def table(old, new, scales):
         lines.append(f"| {env.removesuffix('-v0')} | {', '.join(map(str, seeds))} | {' | '.join(cells)} |")
     if not strata:
         raise SystemExit("no environment has a seed on both sides, and a scale")
-    old_mean, new_mean = (statistics.fmean(statistics.fmean(pair[side] for pair in pairs) for pairs in strata.values()) for side in (0, 1))
+    old_mean, new_mean = means(strata)
     words = f"Mean feasible score {old_mean:.2f} and {new_mean:.2f}, a ratio of {ratio(strata):.2f}"
     if min(map(len, strata.values())) > 1:
         low, high = interval(strata, ratio)

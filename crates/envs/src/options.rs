@@ -125,8 +125,9 @@ impl EnvOptions {
         let frames = |options: &EnvOptions| {
             (options.size, options.observation, options.layout, options.frame_stack)
         };
-        let places =
-            |options: &EnvOptions| options.maps.as_ref().map(|maps| maps.place().to_owned());
+        fn place(options: &EnvOptions) -> Option<&std::path::Path> {
+            options.maps.as_ref().map(|maps| maps.place())
+        }
         [
             ("rules", self.rules == other.rules),
             ("early_creatures", self.early_creatures == other.early_creatures),
@@ -137,7 +138,7 @@ impl EnvOptions {
             ("max_episode_steps", self.max_episode_steps == other.max_episode_steps),
             ("the kind of observation", frames(self) == frames(other)),
             ("the map", self.map == other.map),
-            ("the folder of maps", places(self) == places(other)),
+            ("the folder of maps", place(self) == place(other)),
         ]
         .into_iter()
         .find_map(|(name, same)| (!same).then_some(name))

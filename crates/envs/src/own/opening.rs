@@ -73,7 +73,9 @@ impl OwnRules {
     ) -> Option<ActorId> {
         let spawn = &program.plan.spawns[usize::from(index)];
         let full = world.actors.len() >= MOST_THINGS && world.living().count() >= MOST_THINGS;
-        if full || spawn.kinds.is_empty() || living(spawn, world) >= spawn.most {
+        // With fewer slots than that there is nothing to count.
+        let most = world.actors.len() >= spawn.most as usize && living(spawn, world) >= spawn.most;
+        if full || most || spawn.kinds.is_empty() {
             return None;
         }
         let kind = drawn_kind(spawn, world);

@@ -84,41 +84,28 @@ pub fn check(text: &str) -> Checked {
         }
         let mut names = Names::default();
         let mut plans = Vec::new();
-        for level in 1..=levels.max(1) {
-            for rules in RuleSet::ALL {
-                for hard in [false, true] {
-                    if mistakes.full() {
-                        continue;
-                    }
-                    let document =
-                        layers::document(&root, Setting::new(rules, hard, level), &mut mistakes);
-                    plans.extend(read::plan(&document, &mut names, &mut mistakes));
-                }
+        let settings = settings(levels);
+        for (_, setting) in &settings {
+            if !mistakes.full() {
+                let document = layers::document(&root, *setting, &mut mistakes);
+                plans.extend(read::plan(&document, &mut names, &mut mistakes));
             }
         }
-        // What a level, the hard constraint or a rule set has otherwise is tried as well.
-        let settings = settings(levels);
-        let differs = |at: usize, same: fn(&Plan, &Plan) -> bool| {
-            let own = &plans[index(settings[at].1)];
-            (!settings[..at].iter().any(|(_, other)| same(&plans[index(*other)], own)))
-                .then_some(own)
-        };
+        // What a level, the hard constraint or a rule set has otherwise is tried as well. Without
+        // mistakes every setting has its plan.
+        let same_map = |one: &Plan, other: &Plan| one.map == other.map && one.zones == other.zones;
         if !mistakes.any() {
-            for (at, (name, _)) in settings.iter().enumerate() {
-                let same =
-                    |one: &Plan, other: &Plan| one.map == other.map && one.zones == other.zones;
-                if let Some(plan) = differs(at, same) {
-                    try_map(plan, name, &mut mistakes);
+            for (at, plan) in plans.iter().enumerate() {
+                if !plans[..at].iter().any(|other| same_map(plan, other)) {
+                    try_map(plan, &settings[at].0, &mut mistakes);
                 }
             }
         }
         if !mistakes.any() {
             checks::warn(&plans, &names, &mut mistakes);
-            for at in 0..settings.len() {
-                let same = |one: &Plan, other: &Plan| {
-                    (&one.map, &one.zones, &one.spawns) == (&other.map, &other.zones, &other.spawns)
-                };
-                if let Some(plan) = differs(at, same) {
+            for (at, plan) in plans.iter().enumerate() {
+                let same = |other: &Plan| same_map(plan, other) && plan.spawns == other.spawns;
+                if !plans[..at].iter().any(same) {
                     try_opening(plan, names.counters.len(), &mut mistakes);
                 }
             }
@@ -128,13 +115,13 @@ pub fn check(text: &str) -> Checked {
     Checked { mistakes: mistakes.into_list(), read }
 }
 
-/// Every setting of a task with so many levels, and how messages name it: nothing where it is the
-/// usual one.
+/// Every setting of a task with so many levels, in the order of [`index`], and how messages name it:
+/// nothing where it is the usual one.
 fn settings(levels: u8) -> Vec<(String, Setting)> {
     let mut all = Vec::new();
-    for rules in RuleSet::ALL {
-        for hard in [false, true] {
-            for level in 1..=levels.max(1) {
+    for level in 1..=levels.max(1) {
+        for rules in RuleSet::ALL {
+            for hard in [false, true] {
                 let mut name = String::new();
                 if levels > 1 {
                     name += &format!("level {level}, ");
