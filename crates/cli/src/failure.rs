@@ -1,6 +1,7 @@
 //! How a command fails, and the one line that says so.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use hasard_learn::runs::claim::is_direction;
 use std::ffi::OsString;
 use std::io;
 
@@ -65,8 +66,35 @@ pub fn write_note(mut line: String) {
     let _ = std::io::Write::write_all(&mut std::io::stderr().lock(), line.as_bytes());
 }
 
-fn presentable(text: &str) -> String {
-    text.chars().map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
+/// A text by anyone as it may be printed: nothing in it commands the terminal, ends the line or turns
+/// its order round.
+pub fn presentable(text: &str) -> String {
+    let plain = |letter: char| !letter.is_control() && !is_direction(letter);
+    text.chars().map(|letter| if plain(letter) { letter } else { '\u{fffd}' }).collect()
+}
+
+/// Lines on standard output of a command whose exit code is its result. Where the reader goes away
+/// (`hasard verify DIR | grep -q holds`) the work goes on, and the result stays what it is.
+pub struct Lines(Outcome);
+
+impl Lines {
+    /// None so far.
+    pub fn new() -> Lines {
+        Lines(Ok(()))
+    }
+
+    /// Prints one.
+    pub fn say(&mut self, line: impl std::fmt::Display) {
+        if self.0.is_ok() {
+            let printed = io::Write::write_fmt(&mut io::stdout().lock(), format_args!("{line}\n"));
+            self.0 = printed.map_err(Failure::from);
+        }
+    }
+
+    /// The command's result; if that is good, what became of the lines.
+    pub fn end(self, result: Outcome) -> Outcome {
+        result.and(self.0)
+    }
 }
 
 /// What every command returns.
@@ -122,6 +150,8 @@ pub fn usage_line(error: &clap::Error) -> String {
     let line = presentable(&parts.join("; ").replace(":; ", ": "));
     // The standard library's words for what is no number without a sign.
     let line = line.replace("invalid digit found in string", "give a whole number, 0 or more");
+    let most = format!("give a whole number up to {}", u64::MAX);
+    let line = line.replace("number too large to fit in target type", &most);
     line.strip_prefix("error: ").unwrap_or(&line).to_string()
 }
 

@@ -88,7 +88,9 @@ fn near(place: &Path) -> Option<PathBuf> {
         .ok()?
         .flatten()
         .filter_map(|entry| entry.file_name().into_string().ok());
-    let (distance, name) = names.map(|name| (edit_distance(wanted, &name), name)).min()?;
+    // A link that leads nowhere is no other name.
+    let others = names.filter(|name| name != wanted);
+    let (distance, name) = others.map(|name| (edit_distance(wanted, &name), name)).min()?;
     (distance <= 1 + wanted.len() / 4).then(|| place.with_file_name(name))
 }
 

@@ -130,3 +130,53 @@ fn a_scoreboard_lists_what_holds_and_says_what_does_not() {
     let _ = (path, claim);
     assert!(folder.refused("scoreboard other").contains("hasard claim"));
 }
+
+/// Neither a claim's own words nor a reader that leaves make a claim hold that does not.
+#[test]
+fn words_and_readers_change_no_verdict() {
+    let (folder, path, claim) = claimed("claim_words");
+    let mut forged = claim.clone();
+    forged["environment"] = json!("\u{1b}[31mX\n fake.claim.json: holds: return 99");
+    folder.file("board/forged.claim.json", forged.to_string().as_bytes());
+    let output = folder.run("verify board");
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert_eq!((output.status.code(), printed.lines().count()), (Some(1), 2), "{printed}");
+    assert!(!printed.contains('\u{1b}'), "{printed}");
+    for line in ["verify board", "verify board --json", "scoreboard board"] {
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_hasard"))
+            .args(line.split(' '))
+            .current_dir(&folder.0)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        assert_eq!(child.wait().unwrap().code(), Some(1), "{line}, and nobody reads");
+    }
+    // Names that do not show, or that turn the row round.
+    for name in ["", "  ", "a\u{202e}b", "a\u{7}", &"x".repeat(81)] {
+        let mut forged = claim.clone();
+        forged["name"] = json!(name);
+        folder.file("board/forged.claim.json", forged.to_string().as_bytes());
+        assert!(folder.refused("verify board/forged.claim.json").contains("its name must have"));
+    }
+    let long = "x".repeat(81);
+    assert!(folder.refused(&format!("claim run --name {long} -o board")).contains("80 letters"));
+    // Another agent's claim of the same name keeps its place.
+    let refused = folder.refused("claim other --name mine --episodes 2 -o board");
+    assert!(refused.contains("the claim of another agent"), "{refused}");
+    assert_eq!(serde_json::from_slice::<Value>(&folder.read(&path)).unwrap(), claim);
+}
+
+/// A published folder would lack the file that a link leads to.
+#[cfg(unix)]
+#[test]
+fn an_agent_that_is_a_link_is_refused() {
+    let (folder, path, claim) = claimed("claim_link");
+    let agent = folder.0.join("board").join(claim["agent"].as_str().unwrap());
+    std::fs::rename(&agent, folder.0.join("elsewhere.agent")).unwrap();
+    std::os::unix::fs::symlink(folder.0.join("elsewhere.agent"), &agent).unwrap();
+    let output = folder.run(&format!("verify {path}"));
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.code() == Some(1) && printed.contains("is a link"), "{printed}");
+}

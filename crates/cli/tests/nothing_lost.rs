@@ -48,6 +48,53 @@ fn a_new_run_does_not_begin_among_the_rows_of_another() {
     assert_eq!(text(&folder, "run/metrics.jsonl"), rows);
 }
 
+/// Killed after its first evaluation, before its first checkpoint was due: it goes on from the
+/// candidate that it kept, to the weights of a run that was never killed.
+#[test]
+fn a_run_goes_on_from_a_candidate() {
+    let folder = trained("from_candidate");
+    let rest = "train RemedyRushLevel1 --resume --frames 256 --quiet --out";
+    folder.ok(&format!(
+        "train RemedyRushLevel1 {SMALL} --frames 256 --eval-every 64 --out straight --seed 1"
+    ));
+    let checkpoints = folder.0.join("run/checkpoints");
+    let names = |beginning: &str| -> Vec<std::path::PathBuf> {
+        let all = std::fs::read_dir(&checkpoints).unwrap().map(|entry| entry.unwrap().path());
+        let begins = |path: &std::path::PathBuf| {
+            path.file_name().unwrap().to_str().unwrap().starts_with(beginning)
+        };
+        all.filter(begins).collect()
+    };
+    assert!(!names("best_").is_empty());
+    names("frames_").iter().for_each(|path| std::fs::remove_dir_all(path).unwrap());
+    std::fs::remove_file(folder.0.join("run/selected.json")).unwrap();
+    folder.ok(&format!("{rest} run"));
+    let weights = |run: &str| {
+        folder.read(&format!("{run}/checkpoints/frames_000000000256/weights.safetensors"))
+    };
+    assert!(weights("run") == weights("straight"), "weights differ");
+}
+
+/// A pipe that nobody fills would be waited for for ever.
+#[cfg(unix)]
+#[test]
+fn pipes_among_the_files_of_a_run_are_refused() {
+    let folder = trained("run_pipes");
+    let config = folder.0.join("run/config.json");
+    std::fs::remove_file(&config).unwrap();
+    let made = std::process::Command::new("mkfifo").arg(&config).status().unwrap();
+    assert!(made.success());
+    for line in [
+        "eval run --episodes 1",
+        "export-agent run -o a.agent",
+        "claim run -o board",
+        "train RemedyRushLevel1 --resume --out run --quiet",
+    ] {
+        let said = folder.refused(line);
+        assert!(said.contains("config.json") && said.contains("pipe"), "{line}: {said}");
+    }
+}
+
 #[test]
 fn a_run_whose_checkpoints_are_gone_is_not_begun_again() {
     let folder = trained("checkpoints_gone");

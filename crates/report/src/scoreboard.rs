@@ -97,8 +97,7 @@ fn document(title: &str, entries: Vec<Entry>, refused: &[(String, String)]) -> D
             refused.iter().map(|(claim, why)| vec![Cell::text(claim), Cell::text(why)]).collect();
         let table =
             Table { heads: ["claim", "why"].map(String::from).to_vec(), rows, ..Table::default() };
-        let text =
-            vec!["Their episodes were played again, and something came out otherwise.".to_owned()];
+        let text = vec!["Why these claims are not listed.".to_owned()];
         sections.push(Section {
             slug: "not-listed".into(),
             title: "Not listed".into(),
@@ -109,7 +108,8 @@ fn document(title: &str, entries: Vec<Entry>, refused: &[(String, String)]) -> D
     if let Some(first) = sections.first_mut() {
         first.text.insert(
             0,
-            "Every number was measured by `hasard verify`: the agent's file played the same episodes again, to the bit. \
+            "Return, cost and what follows from them were measured by `hasard verify`: the agent's file played the same \
+             episodes again, to the bit. Algorithm, frames and command are what the agent's file and its author say. \
              Green: the cost's mean is within the budget, on green ground up to the upper end of its 95 % interval."
                 .to_owned(),
         );

@@ -143,8 +143,7 @@ fn run_one(
     report: impl Fn(&Event),
 ) -> Event {
     let evaluated = |event: Event| match evaluate(program, job, stop) {
-        // It is still wanted: the caller stopped it.
-        Ok(()) if job.wants_evaluation() => Event::Stopped,
+        Ok(()) if stop.soon.load(Ordering::SeqCst) && job.wants_evaluation() => Event::Stopped,
         Ok(()) => event,
         Err(why) => Event::Failed(why),
     };
@@ -201,7 +200,9 @@ fn evaluate(program: &Path, job: &Job, stop: Stop<'_>) -> Result<(), String> {
     if !job.wants_evaluation() {
         return Ok(());
     }
-    let (path, partial) = (job.evaluation(), job.evaluation().with_extension("partial"));
+    // Of another name than that of a second sweep in the same folder.
+    let path = job.evaluation();
+    let partial = path.with_extension(format!("{}.partial", std::process::id()));
     let failed =
         |error: std::io::Error| format!("cannot evaluate into {}: {error}", path.display());
     let arguments = job.evaluation_arguments();

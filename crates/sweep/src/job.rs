@@ -52,6 +52,11 @@ fn folder(environment: &str) -> PathBuf {
     Path::new(&environment.replace(',', "+")).components().filter_map(normal).collect()
 }
 
+/// What is in a file of a run: nothing where it cannot be read, or is a pipe that nobody fills.
+fn read(path: &Path) -> Vec<u8> {
+    hasard_media::files::read_limited(path, 1 << 40).unwrap_or_default()
+}
+
 impl Job {
     pub(crate) fn new(
         out: &Path,
@@ -157,7 +162,7 @@ impl Job {
         if self.is_new() {
             return State::New;
         }
-        let text = std::fs::read(self.directory.join("metrics.jsonl")).unwrap_or_default();
+        let text = read(&self.directory.join("metrics.jsonl"));
         let reached = text.split(|byte| *byte == b'\n').rev().find_map(|line| {
             let value: serde_json::Value = serde_json::from_slice(line).ok()?;
             value.get("frames")?.as_f64()
@@ -178,8 +183,7 @@ impl Job {
         };
         let saved = newest("frames_").is_none_or(|saved| saved >= frames);
         let written = |name: &str| -> serde_json::Value {
-            serde_json::from_slice(&std::fs::read(self.directory.join(name)).unwrap_or_default())
-                .unwrap_or_default()
+            serde_json::from_slice(&read(&self.directory.join(name))).unwrap_or_default()
         };
         // The last policy is closed with the selected one; of runs of older versions it was not.
         let last = written("selected.json")["last"]["frames"].as_u64();
@@ -218,8 +222,13 @@ impl Job {
         // A short run has no selection, and its latest checkpoint is what is evaluated.
         let newest = self.checkpoints().filter_map(|entry| written(entry.path())).max();
         let stale = kept < written(self.directory.join("selected.json")).or(newest);
-        let rows = std::fs::read(self.evaluation()).unwrap_or_default();
-        let rows = rows.split(|byte| *byte == b'\n').filter(|row| !row.is_empty()).count() as u64;
+        let rows = read(&self.evaluation());
+        // Its last row sums up the others.
+        let is_episode = |row: &&[u8]| {
+            serde_json::from_slice::<serde_json::Value>(row)
+                .is_ok_and(|row| row.get("episode").is_some())
+        };
+        let rows = rows.split(|byte| *byte == b'\n').filter(is_episode).count() as u64;
         kept.is_none() || stale || rows < u64::from(self.evaluate)
     }
 

@@ -296,7 +296,7 @@ fn jobs_run_are_resumed_and_skipped() {
 fn finished_runs_are_evaluated_once() {
     let folder = Folder::new("evaluate");
     let program = folder.0.join("trainer");
-    let script = "#!/bin/sh\nif [ $1 = eval ]; then for k in $(seq $4); do echo \"{\\\"asked\\\":\\\"$*\\\"}\"; done; exit 0; fi\n\
+    let script = "#!/bin/sh\nif [ $1 = eval ]; then for k in $(seq $4); do echo \"{\\\"episode\\\":$k,\\\"asked\\\":\\\"$*\\\"}\"; done; echo \"{\\\"episodes\\\":$4}\"; exit 0; fi\n\
                   for a in \"$@\"; do case \"$a\" in */seed*) dir=$a;; esac; done\nmkdir -p \"$dir\"; echo '{}' > \"$dir/config.json\"\n\
                   echo '{\"frames\":100}' >> \"$dir/metrics.jsonl\"\n";
     write_program(&program, script);

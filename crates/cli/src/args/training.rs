@@ -199,9 +199,9 @@ pub struct SweepArgs {
     /// One JSON object a job
     #[arg(long)]
     pub json: bool,
-    /// Takes a seed as every command does
-    #[command(flatten)]
-    pub seed: UnusedSeed,
+    /// Refused with a word on --seeds
+    #[arg(long = "seed", value_name = "SEED", hide = true)]
+    pub seed: Option<u64>,
 }
 
 /// With two names as an example.

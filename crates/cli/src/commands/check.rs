@@ -2,7 +2,7 @@
 
 use crate::args::CheckArgs;
 use crate::commands::record::is_png;
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Lines, Outcome};
 use hasard_engine::world::ActorKind;
 use hasard_envs::{Env, EnvOptions, own};
 use serde_json::json;
@@ -22,21 +22,22 @@ pub fn run(args: &CheckArgs) -> Outcome {
     let text = own::read_text(&args.file).map_err(Failure::bad)?;
     let checked = own::check(&text);
     let file = args.file.display().to_string();
+    let mut lines = Lines::new();
     for mistake in &checked.mistakes {
         if args.json {
             let (line, column, warning) = (mistake.line, mistake.column, mistake.warning);
-            say!(
-                "{}",
+            lines.say(
                 json!({ "file": file, "line": line, "column": column, "warning": warning, "problem": mistake.text })
             );
         } else {
-            say!("{file}:{mistake}");
+            lines.say(format!("{file}:{mistake}"));
         }
     }
     let wrong = checked.mistakes.iter().filter(|mistake| !mistake.warning).count();
     if !checked.can_be_played() {
         return Err(Failure::Negative(format!("{file}: {wrong} to mend before it can be played")));
     }
+    lines.end(Ok(()))?;
     let scenario = own::register(&file, &text).map_err(Failure::bad)?;
     let Some(id) = scenario.environments().nth(usize::from(args.level.max(1)) - 1) else {
         return Err(Failure::bad(format!(

@@ -8,8 +8,8 @@ use crate::settings::cores;
 use crate::zoo;
 use hasard_learn::runs::agent::run_config;
 use hasard_learn::runs::agent_file::{AgentFile, export};
-use hasard_learn::runs::claim::{Claim, measure};
-use hasard_media::files::write_whole;
+use hasard_learn::runs::claim::{Claim, measure, sha256, wrong_words};
+use hasard_media::files::{Scratch, write_whole};
 use hasard_report::document::count;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,12 @@ pub fn run(args: &ClaimArgs) -> Outcome {
             args.name
         )));
     }
-    let stem = format!("{id}.{under}.{slug}");
+    let given = args.how.as_deref().unwrap_or_default();
+    if let Some(problem) = wrong_words(&args.name, given) {
+        return Err(Failure::bad(format!("--name and --how of a claim: {problem}")));
+    }
+    let hard = if config.env.hard { ".hard" } else { "" };
+    let stem = format!("{id}.{under}{hard}.{slug}");
     let (file, path) =
         (format!("{stem}.{}", zoo::ENDING), args.out.join(format!("{stem}.{ENDING}")));
     if let Ok(there) = Claim::read(&path)
@@ -50,10 +55,20 @@ pub fn run(args: &ClaimArgs) -> Outcome {
             there.name
         )));
     }
+    // The same agent, measured again, takes the place of what it was.
+    if let Ok(there) = Claim::read(&path)
+        && there.agent_sha256 != sha256(&bytes)
+    {
+        return Err(Failure::bad(format!(
+            "{}: is the claim of another agent; give another --name or --out, or remove that claim",
+            path.display()
+        )));
+    }
     // The agent first: what is claimed is measured from the very file that is given away.
     // Under another name until it is measured, so that an earlier claim stays whole until then.
     let (kept, new) = (args.out.join(&file), args.out.join(format!("{file}.partial")));
     write_whole(&new, &bytes).map_err(Failure::bad)?;
+    let scratch = Scratch::new(new.clone());
     let measured = measure(&new, rules, args.episodes, cores()).map_err(Failure::bad);
     let measured = measured.and_then(|measured| {
         let named = std::fs::rename(&new, &kept);
@@ -61,7 +76,8 @@ pub fn run(args: &ClaimArgs) -> Outcome {
             |error| Failure::bad(format!("{}: cannot be written: {error}", kept.display()));
         named.map(|()| measured).map_err(unnamed)
     });
-    let measured = measured.inspect_err(|_| drop(std::fs::remove_file(&new)))?;
+    drop(scratch);
+    let measured = measured?;
     let how = args.how.clone().unwrap_or_else(|| train_again::command(&config));
     let claim = Claim::new(&args.name, &file, &bytes, &how, &measured);
     write_whole(&path, format!("{:#}\n", json!(claim)).as_bytes()).map_err(Failure::bad)?;

@@ -40,6 +40,15 @@ pub fn run(args: &EvalArgs) -> Outcome {
             out.display()
         )));
     }
+    if let Some(path) = &args.calibration
+        && !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+        && !metadata(path).is_ok_and(|kind| is_special(&kind))
+    {
+        return Err(Failure::bad(format!(
+            "--calibration {}: give a name that ends in .csv",
+            path.display()
+        )));
+    }
     if let Some((count, _)) = film
         && count > args.episodes as usize
     {

@@ -2,7 +2,7 @@
 
 use super::claim::claims;
 use crate::args::ScoreboardArgs;
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Lines, Outcome, presentable};
 use crate::settings::cores;
 use hasard_learn::runs::claim::{Claim, LISTED_EPISODES, Verdict};
 use hasard_report::scoreboard::{Entry, write_scoreboard};
@@ -11,10 +11,11 @@ use serde_json::json;
 /// Runs the command.
 pub fn run(args: &ScoreboardArgs) -> Outcome {
     let paths = claims(&args.folder)?;
-    let (mut entries, mut refused) = (Vec::new(), Vec::new());
+    let (mut entries, mut refused, mut seen) = (Vec::new(), Vec::new(), Vec::new());
     for (number, path) in paths.iter().enumerate() {
         if !args.json {
-            note!("hasard: {} of {}: {}", number + 1, paths.len(), path.display());
+            let shown = presentable(&path.display().to_string());
+            note!("hasard: {} of {}: {shown}", number + 1, paths.len());
         }
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let claim = match Claim::read(path) {
@@ -35,8 +36,15 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
             ));
             continue;
         }
+        // The same file under another name is the same entry.
+        let of = (claim.agent_sha256.clone(), claim.rules.clone(), claim.episodes);
+        if let Some((_, first)) = seen.iter().find(|(known, _)| *known == of) {
+            refused.push((name, format!("its agent is that of {first}")));
+            continue;
+        }
         match claim.check(&args.folder, cores()) {
             Ok(Verdict::Holds(measured)) => {
+                seen.push((of, name));
                 let (evaluation, budget) = (&measured.evaluation, measured.budget);
                 let tails = evaluation.constraints.first().map(|one| one.tails).unwrap_or_default();
                 let env = &measured.config.env;
@@ -66,21 +74,22 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
     }
     let page = write_scoreboard(&args.title, entries, &refused, &args.folder.join("index.html"))
         .map_err(Failure::bad)?;
+    let mut lines = Lines::new();
     if args.json {
         let list: Vec<_> =
             refused.iter().map(|(claim, why)| json!({ "claim": claim, "why": why })).collect();
-        say!(
-            "{}",
+        lines.say(
             json!({ "page": page.display().to_string(), "hold": paths.len() - refused.len(), "refused": list })
         );
     } else {
-        say!("{}: lists {} of {} claims", page.display(), paths.len() - refused.len(), paths.len());
+        let listed = paths.len() - refused.len();
+        lines.say(format!("{}: lists {listed} of {} claims", page.display(), paths.len()));
     }
-    match refused.len() {
+    lines.end(match refused.len() {
         0 => Ok(()),
         1 => Err(Failure::Negative("1 claim is not listed; the page says why".into())),
         count => {
             Err(Failure::Negative(format!("{count} claims are not listed; the page says why")))
         }
-    }
+    })
 }

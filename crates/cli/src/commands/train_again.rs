@@ -9,9 +9,21 @@ use std::path::Path;
 /// evaluations, and for an agent that it began with: settings do not know of one.
 pub fn command(config: &TrainConfig) -> String {
     let (env, usual) = (&config.env, EnvConfig::new(&config.env.id));
+    // A task of the user's is named by its file.
+    let named = |id: &str| {
+        let known = id.parse::<hasard_envs::EnvId>();
+        let file = known.ok().and_then(|id| Some((id.scenario.file?.path, id.level)));
+        match file {
+            Some((path, level)) if level > 1 => format!("{path}#{level}"),
+            Some((path, _)) => path.to_string(),
+            None => id.to_string(),
+        }
+    };
+    let task = env.id.split(',').map(named).collect::<Vec<_>>().join(",");
+    let task = quote(Path::new(&task));
     let mut words = vec![format!(
-        "hasard train {} --algo {} --preset {} --frames {} --seed {}",
-        env.id, config.algorithm, config.preset, config.frames, config.seed
+        "hasard train {task} --algo {} --preset {} --frames {} --seed {}",
+        config.algorithm, config.preset, config.frames, config.seed
     )];
     // Said always where the preset's own rules might be others.
     if env.rules != usual.rules || config.preset == Preset::Tables {

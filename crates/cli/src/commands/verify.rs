@@ -2,7 +2,7 @@
 
 use super::claim::claims;
 use crate::args::VerifyArgs;
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Lines, Outcome, presentable};
 use crate::settings::cores;
 use hasard_learn::runs::claim::{Claim, Verdict};
 use serde_json::json;
@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// Runs the command.
 pub fn run(args: &VerifyArgs) -> Outcome {
-    let mut refused = 0;
+    let (mut refused, mut lines) = (0, Lines::new());
     if args.claim.try_exists().is_ok_and(|there| !there) {
         return Err(Failure::bad(format!(
             "{}: there is no such claim or folder; `hasard claim` writes a claim",
@@ -33,12 +33,11 @@ pub fn run(args: &VerifyArgs) -> Outcome {
         };
         refused += usize::from(held.is_none());
         if args.json {
-            say!(
-                "{}",
+            lines.say(
                 json!({ "claim": path.display().to_string(), "holds": held.is_some(), "problems": problems })
             );
         } else if let Some((claim, measured)) = held {
-            say!(
+            let line = format!(
                 "{}: holds: return {:.3}, cost {:.3} of {}, {} episodes, rules {}",
                 path.display(),
                 claim.return_mean,
@@ -47,12 +46,14 @@ pub fn run(args: &VerifyArgs) -> Outcome {
                 claim.episodes,
                 claim.rules
             );
+            lines.say(presentable(&line));
         } else {
-            say!("{}: does not hold: {}", path.display(), problems.join("; "));
+            let line = format!("{}: does not hold: {}", path.display(), problems.join("; "));
+            lines.say(presentable(&line));
         }
     }
-    match refused {
+    lines.end(match refused {
         0 => Ok(()),
         _ => Err(Failure::Negative(format!("{refused} of {} claims do not hold", paths.len()))),
-    }
+    })
 }

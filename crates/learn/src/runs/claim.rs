@@ -89,6 +89,32 @@ pub enum Verdict {
     Refused(Vec<String>),
 }
 
+/// Most letters of a name, and of a command.
+const LONGEST_NAME: usize = 80;
+const LONGEST_HOW: usize = 10_000;
+
+/// Whether a letter shows nothing but turns the order of those around it, or hides.
+#[must_use]
+pub fn is_direction(letter: char) -> bool {
+    matches!(letter, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
+}
+
+/// What is wrong with a claim's name and the command that it gives, if anything.
+#[must_use]
+pub fn wrong_words(name: &str, how: &str) -> Option<String> {
+    let hidden =
+        |text: &str| text.chars().any(|letter| letter.is_control() || is_direction(letter));
+    if name.trim().is_empty() || name.chars().count() > LONGEST_NAME || hidden(name) {
+        return Some(format!("its name must have 1 to {LONGEST_NAME} letters that all show"));
+    }
+    if how.chars().count() > LONGEST_HOW || hidden(how) {
+        return Some(format!(
+            "its command must have at most {LONGEST_HOW} letters that all show, on one line"
+        ));
+    }
+    None
+}
+
 /// SHA-256 in hexadecimal digits.
 #[must_use]
 pub fn sha256(bytes: &[u8]) -> String {
@@ -216,6 +242,9 @@ impl Claim {
                 format!("has format {}; this program reads {FORMAT}", claim.format),
             ));
         }
+        if let Some(problem) = wrong_words(&claim.name, &claim.how) {
+            return Err(LearnError::content(path, format!("is no claim: {problem}")));
+        }
         Ok(claim)
     }
 
@@ -244,6 +273,12 @@ impl Claim {
             ));
         }
         let path = folder.join(&self.agent);
+        if std::fs::symlink_metadata(&path).is_ok_and(|kind| kind.is_symlink()) {
+            return Ok(Verdict::Refused(vec![format!(
+                "the agent '{}' is a link; put the file itself beside the claim",
+                self.agent
+            )]));
+        }
         let (bytes, file) = AgentFile::read_whole(&path)?;
         let found = sha256(&bytes);
         if found != self.agent_sha256 {

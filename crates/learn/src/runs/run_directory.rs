@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use hasard_envs::Episode;
+use hasard_media::files::{NO_FILE, is_special};
 use hasard_media::shell::quote;
 use serde_json::{Value, json};
 
@@ -200,7 +201,7 @@ impl RunDirectory {
         self.rewind_lines(METRICS, rows, warn)?;
         self.rewind_lines(HEATMAPS, frames, warn)?;
         for file in tensorboard::files(&self.path) {
-            let bytes = fs::read(&file).map_err(LearnError::file(&file, "read"))?;
+            let bytes = read_regular(&file)?;
             let kept = tensorboard::until(&bytes, rows);
             if kept.len() < bytes.len() {
                 write_whole(&file, &kept)?;
@@ -216,11 +217,11 @@ impl RunDirectory {
         warn: &mut dyn FnMut(String),
     ) -> Result<(), LearnError> {
         let path = self.path.join(name);
-        let text = match fs::read(&path) {
-            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
-            Err(source) => return Err(LearnError::File { path, doing: "read", source }),
-        };
+        if matches!(fs::metadata(&path), Err(error) if error.kind() == std::io::ErrorKind::NotFound)
+        {
+            return Ok(());
+        }
+        let text = String::from_utf8_lossy(&read_regular(&path)?).into_owned();
         let mut kept = String::new();
         for (number, line) in text.lines().enumerate() {
             match serde_json::from_str::<Value>(line)
@@ -268,10 +269,23 @@ pub fn episode_row(env: &str, number: u64, episode: &Episode) -> Value {
     })
 }
 
+/// Reads a file of a run. A pipe would be waited for without end, and a device may have none.
+///
+/// # Errors
+/// One line that names the file.
+pub(crate) fn read_regular(path: &Path) -> Result<Vec<u8>, LearnError> {
+    let kind = fs::metadata(path).map_err(LearnError::file(path, "read"))?;
+    if is_special(&kind) {
+        return Err(LearnError::content(path, NO_FILE));
+    }
+    fs::read(path).map_err(LearnError::file(path, "read"))
+}
+
 /// What the run in a directory selected when it ended, if it did.
 #[must_use]
 pub fn read_selection(path: &Path) -> Option<Selection> {
-    SELECTION.iter().find_map(|name| serde_json::from_slice(&fs::read(path.join(name)).ok()?).ok())
+    let read = |name: &&str| serde_json::from_slice(&read_regular(&path.join(name)).ok()?).ok();
+    SELECTION.iter().find_map(read)
 }
 
 /// What keeps the word of a run on what it selected from being read; nothing if it is whole, or if
@@ -297,11 +311,11 @@ pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
             "no run is here (config.json is missing); give the directory of `hasard train --out`",
         ));
     }
-    let text = fs::read(&file).map_err(LearnError::file(&file, "read"))?;
+    let text = read_regular(&file)?;
     let config: TrainConfig = serde_json::from_slice(&text).map_err(|error| {
         LearnError::content(&file, format!("damaged or of another version: {error}"))
     })?;
-    config.check()?;
+    config.check().map_err(|error| LearnError::content(&file, error.to_string()))?;
     Ok(config)
 }
 

@@ -24,6 +24,11 @@ const HOURS_WITHOUT_ASKING: f64 = 48.0;
 
 /// Runs the command.
 pub fn run(args: &SweepArgs) -> Outcome {
+    if let Some(seed) = args.seed {
+        return Err(Failure::bad(format!(
+            "--seed {seed}: a sweep has several; give --seeds {seed}"
+        )));
+    }
     if let Some(advice) = args.what.to_str().and_then(paper::advice) {
         say!("{advice}");
         return Ok(());

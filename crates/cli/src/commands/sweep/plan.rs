@@ -18,9 +18,6 @@ const MOST_KINDS: usize = 6;
 /// Steps of a rollout that is measured, if the run names no length to learn through.
 const SHORT: usize = 32;
 
-/// Tics of the longest episode.
-const EPISODE_TICS: u64 = 2100;
-
 /// What is still to do.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
@@ -68,7 +65,7 @@ impl Plan {
         let mut plan = Plan { runs: jobs.len(), ..Plan::default() };
         let mut kinds: BTreeMap<String, (&TrainConfig, u64)> = BTreeMap::new();
         for (job, config) in jobs {
-            plan.frames += job.frames;
+            plan.frames = plan.frames.saturating_add(job.frames);
             let done = match job.state() {
                 State::Finished => job.frames,
                 State::Unfinished(frames) => frames.min(job.frames),
@@ -76,9 +73,10 @@ impl Plan {
             };
             plan.finished += usize::from(done == job.frames);
             let left = job.frames - done;
-            plan.left += left;
+            plan.left = plan.left.saturating_add(left);
             if left > 0 {
-                kinds.entry(kind(config)).or_insert((config, 0)).1 += left + tested(job, config);
+                let of_kind = &mut kinds.entry(kind(config)).or_insert((config, 0)).1;
+                *of_kind = of_kind.saturating_add(left).saturating_add(tested(job, config));
             }
         }
         if !measures || kinds.is_empty() {
@@ -168,7 +166,7 @@ fn of_short_updates(config: &TrainConfig) -> TrainConfig {
 /// for a second.
 pub fn outlook(config: &TrainConfig, options: &EnvOptions) -> Result<String, Failure> {
     let (rate, bytes) = tried(config, options, 1.0)?;
-    let hours = (config.frames + evaluated(config)) as f64 / rate / 3600.0;
+    let hours = config.frames.saturating_add(evaluated(config)) as f64 / rate / 3600.0;
     Ok(format!(
         "about {} here, at {rate:.0} frames/s and with evaluations; {} on disk",
         span(hours),
@@ -178,7 +176,12 @@ pub fn outlook(config: &TrainConfig, options: &EnvOptions) -> Result<String, Fai
 
 /// Frames that a job's evaluations play beside what it learns from.
 fn tested(job: &Job, config: &TrainConfig) -> u64 {
-    evaluated(config) + u64::from(job.evaluate) * EPISODE_TICS
+    evaluated(config).saturating_add(u64::from(job.evaluate) * tics(config))
+}
+
+/// Tics of an episode that only time ends.
+fn tics(config: &TrainConfig) -> u64 {
+    u64::from(config.episode_steps) * u64::from(config.env.frame_skip)
 }
 
 /// Frames that a run's own evaluations play.
@@ -193,7 +196,8 @@ fn evaluated(config: &TrainConfig) -> u64 {
     // Up to three candidates are confirmed as a rule, and the selected checkpoint closes the run.
     let further =
         if during > 0 { (during.min(3) + 1) * config.confirming_episodes() as u64 } else { 0 };
-    (during * evaluation.episodes as u64 + further) * EPISODE_TICS
+    let episodes = during.saturating_mul(evaluation.episodes as u64).saturating_add(further);
+    episodes.saturating_mul(tics(config))
 }
 
 /// `270 G`, `8.0 M`, `300`.

@@ -2,10 +2,10 @@
 
 use crate::error::LearnError;
 use crate::learning::normaliser::Moments;
+use crate::runs::run_directory::read_regular;
 use crate::runs::selection::{Candidate, Candidates};
 use crate::runs::watch::Watch;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::path::Path;
 
 /// Counters and small state of a run.
@@ -71,7 +71,7 @@ pub(super) struct StateFile {
 
 impl StateFile {
     pub(super) fn read(path: &Path) -> Result<StateFile, LearnError> {
-        let text = fs::read(path).map_err(LearnError::file(path, "read"))?;
+        let text = read_regular(path)?;
         serde_json::from_slice(&text)
             .map_err(|error| LearnError::content(path, format!("damaged: {error}")))
     }

@@ -7,11 +7,11 @@ use crate::runs::checkpoint::blocks::{check_block, parse_doubles, parse_floats, 
 use crate::runs::checkpoint::progress::{Progress, TRAINING, WEIGHTS, read_state};
 use crate::runs::checkpoint::write::{Checkpoint, parameter_names};
 use crate::runs::checksum::crc32c;
+use crate::runs::run_directory::read_regular;
 use crate::sampling::sampler::SamplerState;
 use hasard_envs::LaneState;
 use safetensors::tensor::{Dtype, SafeTensors};
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::path::Path;
 
 /// A checkpoint read back and found whole.
@@ -46,7 +46,7 @@ impl Loaded {
         let state = read_state(directory)?;
         let read = |name: &str, checksum: u32| {
             let path = directory.join(name);
-            let bytes = fs::read(&path).map_err(LearnError::file(&path, "read"))?;
+            let bytes = read_regular(&path)?;
             if crc32c(&bytes) != checksum {
                 return Err(LearnError::content(
                     &path,

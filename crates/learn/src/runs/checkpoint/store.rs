@@ -149,14 +149,16 @@ impl Store {
         Ok(known)
     }
 
-    /// The newest whole checkpoint; `warn` gets a line for each damaged one that is passed over.
+    /// The newest whole checkpoint, or else the newest whole candidate: a run that was killed early
+    /// may have been judged before its first checkpoint was due. `warn` gets a line for each damaged
+    /// one that is passed over.
     pub fn newest(&self, warn: &mut dyn FnMut(String)) -> Result<Option<Loaded>, LearnError> {
         if let Err(error) = fs::read_dir(&self.directory)
             && error.kind() != ErrorKind::NotFound
         {
             return Err(LearnError::file(&self.directory, "read")(error));
         }
-        let all = self.all();
+        let all = [self.all(), self.numbered("best_")].concat();
         for path in &all {
             match Loaded::read(path) {
                 Ok(loaded) => return Ok(Some(loaded)),
