@@ -15,6 +15,7 @@ mod first_episodes;
 pub mod heatmap;
 pub mod measure;
 pub mod metrics_explained;
+pub mod metrics_log;
 pub mod progress_bar;
 pub mod report;
 pub mod run_directory;

@@ -15,12 +15,12 @@ use crate::error::LearnError;
 use crate::runs::calibration::{calibrate, predictions};
 use crate::runs::evaluation::Closing;
 use crate::runs::selection::Selection;
-use crate::runs::tensorboard::{self, EventFile};
+use crate::runs::tensorboard;
 
 /// Reports, a line each.
-const METRICS: &str = "metrics.jsonl";
+pub(super) const METRICS: &str = "metrics.jsonl";
 /// Where the agents have been, a line a moment.
-const HEATMAPS: &str = "heatmaps.jsonl";
+pub(super) const HEATMAPS: &str = "heatmaps.jsonl";
 /// Which checkpoint the run selects, and its name in runs of older versions.
 const SELECTION: [&str; 2] = ["selected.json", "hand_out.json"];
 /// Episodes of the closing evaluations, one a line: of the selected checkpoint, and of the last
@@ -341,67 +341,4 @@ fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
         fs::rename(&temporary, path)
     };
     write().map_err(LearnError::file(path, "write"))
-}
-
-/// Where reports go: a line of JSON each, and TensorBoard's event file.
-pub struct MetricsLog {
-    path: PathBuf,
-    lines: File,
-    events: EventFile,
-}
-
-impl MetricsLog {
-    /// Opens a run's log; rows after these frames are added at its end.
-    pub fn open(run: &Path, frames: u64) -> Result<MetricsLog, LearnError> {
-        let path = run.join(METRICS);
-        let lines = File::options()
-            .create(true)
-            .append(true)
-            .open(&path)
-            .map_err(LearnError::file(&path, "open"))?;
-        Ok(MetricsLog { lines, events: EventFile::create(run, frames)?, path })
-    }
-
-    /// Adds a line to the run's `heatmaps.jsonl`.
-    pub fn write_heatmap(&mut self, line: &Value) -> Result<(), LearnError> {
-        let path = self.path.with_file_name(HEATMAPS);
-        let mut file = File::options()
-            .create(true)
-            .append(true)
-            .open(&path)
-            .map_err(LearnError::file(&path, "open"))?;
-        file.write_all(format!("{line}\n").as_bytes()).map_err(LearnError::file(&path, "write"))
-    }
-
-    /// Writes a row.
-    pub fn write(&mut self, frames: u64, row: &Value) -> Result<(), LearnError> {
-        let mut line = row.to_string();
-        line.push('\n');
-        self.lines.write_all(line.as_bytes()).map_err(LearnError::file(&self.path, "write"))?;
-        let mut scalars = Vec::new();
-        collect_scalars("", row, &mut scalars);
-        self.events.scalars(frames, &scalars)
-    }
-}
-
-/// Every number of a row, nested ones under joined names.
-fn collect_scalars(prefix: &str, value: &Value, out: &mut Vec<(String, f64)>) {
-    match value {
-        Value::Number(number) => {
-            out.extend(number.as_f64().map(|number| (prefix.to_string(), number)))
-        }
-        Value::Object(fields) => {
-            for (name, value) in fields {
-                let name =
-                    if prefix.is_empty() { name.clone() } else { format!("{prefix}/{name}") };
-                collect_scalars(&name, value, out);
-            }
-        }
-        Value::Array(items) => {
-            for (index, value) in items.iter().enumerate() {
-                collect_scalars(&format!("{prefix}/{index}"), value, out);
-            }
-        }
-        _ => {}
-    }
 }

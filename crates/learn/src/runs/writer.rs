@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::error::LearnError;
 use crate::runs::checkpoint::{Checkpoint, Progress, Store};
-use crate::runs::run_directory::MetricsLog;
+use crate::runs::metrics_log::MetricsLog;
 
 enum Job {
     Row(u64, Value),
