@@ -30,6 +30,14 @@ impl Failure {
     pub fn bad(message: impl std::fmt::Display) -> Failure {
         Failure::BadInput(presentable(&message.to_string()))
     }
+
+    /// The same with what it is about before it, if it is of bad input.
+    pub fn about(self, what: &str) -> Failure {
+        match self {
+            Failure::BadInput(message) => Failure::bad(format!("{what}: {message}")),
+            other => other,
+        }
+    }
 }
 
 impl Failure {

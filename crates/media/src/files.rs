@@ -175,6 +175,16 @@ pub fn is_special(kind: &std::fs::Metadata) -> bool {
     !kind.is_file() && !kind.is_dir()
 }
 
+/// Whether another process has a lock on a regular file.
+#[must_use]
+pub fn is_locked(path: &Path) -> bool {
+    // Shared, and let go at once: a process that locks it this very moment is hardly ever in its way.
+    std::fs::metadata(path).is_ok_and(|kind| kind.is_file())
+        && std::fs::File::open(path).is_ok_and(|file| {
+            matches!(file.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock))
+        })
+}
+
 /// Reads a file that must not be larger than `limit` bytes, so that a wrong name cannot fill the
 /// memory.
 ///

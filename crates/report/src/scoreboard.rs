@@ -13,6 +13,8 @@ use std::path::{Path, PathBuf};
 pub struct Entry {
     /// Id of the environment.
     pub environment: String,
+    /// SHA-256 of the text of a task of one's own, which two tasks of one name do not share.
+    pub text: Option<String>,
     /// The rule set.
     pub rules: String,
     /// The hard constraint.
@@ -21,7 +23,8 @@ pub struct Entry {
     pub name: String,
     /// The algorithm that trained it.
     pub algorithm: String,
-    /// What it sees: `rgb`, `rgb+depth`, `segmented` or `grey`.
+    /// What it sees: `rgb`, `rgb+depth`, `segmented` or `grey`, with size and number of pictures
+    /// where these are not the usual ones.
     pub sees: String,
     /// Its action space: `simplified` or `full`.
     pub acts: String,
@@ -85,11 +88,14 @@ pub fn write_scoreboard(
 
 fn document(title: &str, entries: Vec<Entry>, refused: &[(String, String)]) -> Document {
     let subtitle = format!("{} whose claims hold", count(entries.len(), "agent"));
-    let mut groups: BTreeMap<(usize, u32, bool, String), Vec<Entry>> = BTreeMap::new();
+    let own = entries.iter().any(|entry| entry.text.is_some());
+    // Tasks of one's own come after the benchmark's, by their names.
+    let mut groups = BTreeMap::<_, Vec<Entry>>::new();
     for entry in entries {
         let (scenario, level) = scenario_and_level(&entry.environment);
-        let key = (scenario_order(&scenario), level, entry.hard, entry.rules.clone());
-        groups.entry(key).or_default().push(entry);
+        let order = scenario_order(&scenario);
+        let task = (order, scenario, entry.text.clone(), level);
+        groups.entry((task, entry.hard, entry.rules.clone())).or_default().push(entry);
     }
     let mut sections: Vec<Section> = groups.into_values().map(section).collect();
     if !refused.is_empty() {
@@ -113,6 +119,8 @@ fn document(title: &str, entries: Vec<Entry>, refused: &[(String, String)]) -> D
              Green: the cost's mean is within the budget, on green ground up to the upper end of its 95 % interval."
                 .to_owned(),
         );
+        let files = "A task of one's own bears the first digits of the SHA-256 of its file, which its agents keep.";
+        first.text.extend(own.then(|| files.to_owned()));
     }
     Document { title: title.to_owned(), subtitle, sections }
 }
@@ -125,7 +133,10 @@ fn section(mut entries: Vec<Entry>) -> Section {
     let first = &entries[0];
     let (scenario, level) = scenario_and_level(&first.environment);
     let constraint = if first.hard { ", hard constraint" } else { "" };
-    let title = format!("{} {level}, rules {}{constraint}", scenario_name(&scenario), first.rules);
+    let text: Option<String> = first.text.as_ref().map(|digest| digest.chars().take(8).collect());
+    let file = text.map_or_else(String::new, |digits| format!(", task file {digits}"));
+    let title =
+        format!("{} {level}{file}, rules {}{constraint}", scenario_name(&scenario), first.rules);
     let spread = |(mean, half): (f64, f64)| Cell {
         sort: Some(mean),
         ..Cell::text(format!("{mean:.2} ± {half:.2}"))
@@ -172,6 +183,7 @@ mod tests {
     fn entry(name: &str, returns: f64, cost: f64, cost_high: f64) -> Entry {
         Entry {
             environment: "RemedyRushLevel1-v0".into(),
+            text: None,
             rules: "paper".into(),
             hard: false,
             name: name.into(),
@@ -189,6 +201,31 @@ mod tests {
             agent: "one.agent".into(),
             how: "hasard train".into(),
         }
+    }
+
+    /// Each has a table of its own, under its name and the digest of its file.
+    #[test]
+    fn tasks_of_ones_own_are_not_mixed() {
+        let own = |name: &str, id: &str, text: &str| Entry {
+            environment: id.into(),
+            text: Some(text.into()),
+            ..entry(name, 1.0, 1.0, 2.0)
+        };
+        let entries = vec![
+            own("c", "ZooLevel1-v0", "0123456789"),
+            own("b", "MazeLevel1-v0", "9876543210"),
+            own("a", "MazeLevel1-v0", "0123456789"),
+            own("d", "MazeLevel1-v0", "0123456789"),
+            entry("first", 1.0, 1.0, 2.0),
+        ];
+        let document = document("Scores", entries, &[]);
+        let titles: Vec<&str> =
+            document.sections.iter().map(|section| section.title.as_str()).collect();
+        assert_eq!(titles.len(), 4, "{titles:?}");
+        assert!(titles[0].starts_with("Remedy Rush 1, rules paper"), "{titles:?}");
+        assert!(titles[1].contains("Maze") && titles[1].contains("01234567,"), "{titles:?}");
+        assert!(titles[2].contains("Maze") && titles[2].contains("98765432,"), "{titles:?}");
+        assert!(titles[3].contains("Zoo"), "{titles:?}");
     }
 
     #[test]

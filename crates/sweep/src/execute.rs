@@ -2,13 +2,14 @@
 
 use crate::job::{Job, State};
 use hasard_media::shell::quote;
+use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Variable of a job's process: it stops when its standard input ends, which it does with this
@@ -17,6 +18,9 @@ pub const STOPS_WITH_INPUT: &str = "HASARD_STOPS_WITH_INPUT";
 
 /// Time between two looks at a process.
 const LOOK_EVERY: Duration = Duration::from_millis(30);
+
+/// Time between two looks at a run that another process trains.
+const ASK_EVERY: Duration = Duration::from_millis(300);
 
 /// What happens to a job.
 #[derive(Clone, PartialEq, Debug)]
@@ -31,6 +35,8 @@ pub enum Event {
     Failed(String),
     /// The caller stopped it.
     Stopped,
+    /// Another process trains it: its turn comes again when that has ended.
+    Elsewhere,
 }
 
 /// How the caller ends a sweep before its time.
@@ -57,7 +63,8 @@ pub struct Summary {
 
 /// Runs jobs, `parallel` processes of `program` at a time: finished ones are skipped, unfinished
 /// ones resumed. A job that fails does not stop the others. What a process prints goes to the job's
-/// log. `report` hears of every event.
+/// log. `report` hears of every event. A run that another process trains waits until that has ended,
+/// so that two sweeps share their work.
 ///
 /// Several processes share the cores: each is given its number of threads, unless its job
 /// chooses one. Otherwise every one of them would take all cores, and they would wait for each
@@ -74,19 +81,26 @@ pub fn run_jobs(
     let parallel = parallel.clamp(1, jobs.len().max(1));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let share = (parallel > 1).then(|| (cores / parallel).max(1));
-    let next = AtomicUsize::new(0);
+    let queue = Mutex::new((0..jobs.len()).map(|index| (index, false)).collect::<VecDeque<_>>());
+    let queue = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let summary = Mutex::new(Summary::default());
     std::thread::scope(|scope| {
         for _ in 0..parallel {
             scope.spawn(|| {
                 while !stop.soon.load(Ordering::SeqCst) {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(job) = jobs.get(index) else { break };
+                    let Some((index, waits)) = queue().pop_front() else { break };
+                    let job = &jobs[index];
                     let event = run_one(program, job, share, stop, |event| report(index, event));
-                    report(index, &event);
-                    let mut summary =
-                        summary.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                    if event != Event::Elsewhere || !waits {
+                        report(index, &event);
+                    }
+                    let mut summary = summary.lock().unwrap_or_else(PoisonError::into_inner);
                     match event {
+                        Event::Elsewhere => {
+                            drop(summary);
+                            queue().push_back((index, true));
+                            std::thread::sleep(if waits { ASK_EVERY } else { LOOK_EVERY });
+                        }
                         Event::Failed(why) => {
                             summary.failed.push((job.directory.display().to_string(), why))
                         }
@@ -98,7 +112,7 @@ pub fn run_jobs(
             });
         }
     });
-    let mut summary = summary.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let mut summary = summary.into_inner().unwrap_or_else(PoisonError::into_inner);
     summary.failed.sort();
     summary
 }
@@ -151,6 +165,9 @@ fn run_one(
     if state == State::Finished {
         return evaluated(Event::AlreadyFinished);
     }
+    if job.is_held() {
+        return Event::Elsewhere;
+    }
     let mut arguments = job.arguments_from(state);
     if let Some(threads) = share.filter(|_| !job.chooses_threads()) {
         arguments.extend(["--threads".into(), threads.to_string().into()]);
@@ -170,6 +187,8 @@ fn run_one(
             evaluated(Event::Finished(began.elapsed()))
         }
         (Ok(_), _) if stop.soon.load(Ordering::SeqCst) => Event::Stopped,
+        // Another sweep was faster by a moment.
+        (Ok(_), _) if job.is_held() => Event::Elsewhere,
         (Ok(status), _) if status.success() => Event::Failed(format!(
             "ended before its {} frames; see {}",
             job.frames,

@@ -156,6 +156,12 @@ impl Job {
         !self.directory.join("config.json").is_file()
     }
 
+    /// Whether a training has the run's folder.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        hasard_media::files::is_locked(&self.directory.join("lock"))
+    }
+
     /// How far the run is, by its `config.json` and the last whole line of its `metrics.jsonl`.
     #[must_use]
     pub fn state(&self) -> State {

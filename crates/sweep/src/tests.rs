@@ -289,6 +289,38 @@ fn jobs_run_are_resumed_and_skipped() {
     );
 }
 
+/// A run that another sweep has is waited for, after all others, and counts as finished before.
+#[cfg(unix)]
+#[test]
+fn two_sweeps_share_their_runs() {
+    let folder = Folder::new("share");
+    let program = folder.0.join("trainer");
+    let script = "#!/bin/sh\nfor a in \"$@\"; do case \"$a\" in */seed*) dir=$a;; esac; done\nmkdir -p \"$dir\"; echo '{}' > \"$dir/config.json\"\n\
+                  echo '{\"frames\":100}' >> \"$dir/metrics.jsonl\"\n";
+    write_program(&program, script);
+    let jobs = jobs(&folder.0.join("out"), "[1, 2]");
+    let held = &jobs[0].directory;
+    std::fs::create_dir_all(held).unwrap();
+    let lock = std::fs::File::create(held.join("lock")).unwrap();
+    lock.lock().unwrap();
+    let events = Mutex::new(Vec::new());
+    let summary = run_jobs(&program, &jobs, 1, NEVER, |job, event| {
+        if matches!(event, Event::Finished(_)) {
+            // The other process comes to its end.
+            std::fs::write(held.join("config.json"), "{}").unwrap();
+            std::fs::write(held.join("metrics.jsonl"), "{\"frames\":100}\n").unwrap();
+            lock.unlock().unwrap();
+        }
+        events.lock().unwrap().push((job, event.clone()));
+    });
+    assert_eq!((summary.skipped, summary.finished, summary.failed.len()), (1, 1, 0), "{summary:?}");
+    let events = events.into_inner().unwrap();
+    assert_eq!(events[0], (0, Event::Elsewhere));
+    assert_eq!(events[1], (1, Event::Started(State::New)));
+    assert_eq!(events[3], (0, Event::AlreadyFinished));
+    assert_eq!(events.len(), 4);
+}
+
 /// Agents of finished runs are evaluated once, those of runs that were finished before as well; and
 /// jobs that choose their threads keep them.
 #[cfg(unix)]

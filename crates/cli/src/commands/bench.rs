@@ -76,6 +76,14 @@ const LEAST_ROUNDS: usize = 3;
 /// The loop with every family of kernels that this processor has and may use, on one thread and on
 /// as many as asked for.
 fn learn(args: &BenchArgs) -> Outcome {
+    let chosen = ["learning.threads", "sampling.samplers"]
+        .into_iter()
+        .find(|name| args.set.iter().any(|set| set.replace('/', ".").starts_with(name)));
+    if let Some(name) = chosen {
+        return Err(Failure::bad(format!(
+            "--set {name}: bench --learn measures with 1 thread and with --threads; give that"
+        )));
+    }
     let env = settings::env_config(&args.env, &args.env_args, &args.observation);
     let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
     let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env)

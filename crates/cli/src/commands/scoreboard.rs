@@ -4,7 +4,8 @@ use super::claim::claims;
 use crate::args::ScoreboardArgs;
 use crate::failure::{Failure, Lines, Outcome, presentable};
 use crate::settings::cores;
-use hasard_learn::runs::claim::{Claim, LISTED_EPISODES, Verdict};
+use hasard_learn::config::EnvConfig;
+use hasard_learn::runs::claim::{Claim, LISTED_EPISODES, Verdict, sha256};
 use hasard_report::scoreboard::{Entry, write_scoreboard};
 use serde_json::json;
 
@@ -48,8 +49,10 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
                 let (evaluation, budget) = (&measured.evaluation, measured.budget);
                 let tails = evaluation.constraints.first().map(|one| one.tails).unwrap_or_default();
                 let env = &measured.config.env;
+                let own = env.scenario_file.and_then(|own| own.scenario().file);
                 entries.push(Entry {
-                    sees: env.observation.clone(),
+                    sees: sees(env),
+                    text: own.map(|file| sha256(file.text.as_bytes())),
                     acts: if env.full_actions { "full" } else { "simplified" }.into(),
                     environment: claim.environment,
                     rules: claim.rules,
@@ -92,4 +95,17 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
             Err(Failure::Negative(format!("{count} claims are not listed; the page says why")))
         }
     })
+}
+
+/// What an agent sees; its size and number of pictures where they are not the usual ones.
+fn sees(env: &EnvConfig) -> String {
+    let usual = EnvConfig::new(&env.id);
+    let mut text = env.observation.clone();
+    if env.size != usual.size {
+        text += &format!(", {}x{}", env.size.0, env.size.1);
+    }
+    if env.frame_stack != usual.frame_stack {
+        text += &format!(", {} pictures", env.frame_stack);
+    }
+    text
 }

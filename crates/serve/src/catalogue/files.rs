@@ -1,6 +1,6 @@
 //! Files of runs: when they are others, and reading them bounded.
 
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::io;
 use std::path::Path;
 use std::time::SystemTime;
@@ -46,9 +46,7 @@ pub(crate) fn open(path: &Path) -> io::Result<File> {
 
 /// Whether a training has this run's folder.
 pub(crate) fn is_held(run: &Path) -> bool {
-    // Shared, and let go at once: a training that begins this very moment is hardly ever in its way.
-    open(&run.join("lock"))
-        .is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+    hasard_media::files::is_locked(&run.join("lock"))
 }
 
 /// Threads that read files at a time: more than cores, since a disk takes its time.

@@ -163,7 +163,8 @@ fn change(sweep: &mut Sweep, args: &SweepArgs) -> Result<(), Failure> {
         Ok(name.parse::<AlgorithmKind>().map_err(Failure::bad)?.name().to_string())
     };
     for algorithm in sweep.grids.iter_mut().flat_map(|grid| &mut grid.algorithms) {
-        *algorithm = own_name(algorithm)?;
+        let named = |error: Failure| error.about(&args.what.to_string_lossy());
+        *algorithm = own_name(algorithm).map_err(named)?;
     }
     if !args.algos.is_empty() {
         sweep.restrict_algorithms(
@@ -309,6 +310,7 @@ fn write(as_json: bool, index: usize, job: &Job, event: &Event, progress: &Progr
         Event::Finished(_) => "finished",
         Event::Failed(_) => "failed",
         Event::Stopped => "stopped",
+        Event::Elsewhere => "elsewhere",
     };
     let mut object = progress.object(event, outcome.as_ref());
     object.insert("job".into(), json!(index));

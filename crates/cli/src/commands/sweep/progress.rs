@@ -107,6 +107,8 @@ impl Progress {
                 }
                 self.done += 1;
             }
+            // It still waits, and for how long is the other process's.
+            Event::Elsewhere => _ = self.running.remove(&index),
             _ => {
                 self.running.remove(&index);
                 self.done += 1;
@@ -150,6 +152,7 @@ impl Progress {
             }
             Event::Failed(why) => format!("[{done}/{total}] {name}: failed: {why}{left}"),
             Event::Stopped => format!("[{done}/{total}] {name}: stopped; the same command goes on"),
+            Event::Elsewhere => format!("{name}: another process trains it; its turn comes again"),
         })
     }
 

@@ -15,7 +15,8 @@ pub fn settings(job: &Job) -> Result<TrainConfig, Failure> {
     let wrong = |error: clap::Error| named(&crate::failure::usage_line(&error));
     let typed = Cli::command().try_get_matches_from(line).map_err(wrong)?;
     match (Cli::from_arg_matches(&typed).map_err(wrong)?.command, typed.subcommand()) {
-        (Command::Train(args), Some((_, typed))) => configuration(&with_rules(&args, typed)),
+        (Command::Train(args), Some((_, typed))) => configuration(&with_rules(&args, typed))
+            .map_err(|error| error.about(&job.command_line("hasard"))),
         _ => Err(named("not a training")),
     }
 }
