@@ -63,6 +63,23 @@ def test_wrong_arrays_are_refused(wrong: Any) -> None:
         made.bind(observations=frozen, **small)
 
 
+def test_arrays_that_share_memory_are_refused() -> None:
+    made = Worlds(ENV, 5, resolution="64x48", num_threads=0)
+    block = np.zeros(9, np.float32)
+    given = {
+        "observations": np.zeros((5, 48, 64, 3), np.uint8),
+        "rewards": block[:5],
+        "costs": block[4:],
+        "terminated": np.zeros(5, bool),
+        "truncated": np.zeros(5, bool),
+    }
+    with pytest.raises(BufferError, match="rewards and costs share memory; give each an array of its own"):
+        made.bind(**given)
+    with pytest.raises(BufferError, match="terminated and truncated share memory"):
+        made.bind(**(given | {"costs": np.zeros(5, np.float32), "truncated": given["terminated"]}))
+    made.bind(**(given | {"rewards": block[:4].repeat(2)[:5], "costs": block[4:]}))
+
+
 def test_observations_are_never_written_again() -> None:
     made = Worlds(ENV, 2, resolution="64x48", num_threads=1)
     kept = [made.reset(0).observations]

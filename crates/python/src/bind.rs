@@ -4,7 +4,7 @@ use crate::batch::Arrays;
 use crate::errors::Fault;
 use crate::facts::Facts;
 use crate::inner::Inner;
-use crate::memory::{External, bound};
+use crate::memory::{External, apart, bound};
 use hasard_envs::{Buffer, EnvError};
 use pyo3::prelude::*;
 use pyo3::types::PySlice;
@@ -30,12 +30,19 @@ pub fn cut(facts: &Facts, given: &Given<'_, '_>) -> PyResult<(Vec<Memories>, Vec
     let [height, width, channels] = facts.shape;
     // All are looked at before any is taken.
     let (lanes, terms) = (facts.lanes, facts.terms.len());
-    bound::<u8>("observations", given.observations, &[lanes, height, width, channels])?;
-    bound::<f32>("rewards", given.rewards, &[lanes])?;
-    bound::<f32>("costs", given.costs, &[lanes])?;
-    bound::<bool>("terminated", given.terminated, &[lanes])?;
-    bound::<bool>("truncated", given.truncated, &[lanes])?;
-    given.cost_terms.map(|array| bound::<f32>("cost_terms", array, &[lanes, terms])).transpose()?;
+    let shape = [lanes, height, width, channels];
+    let mut places = vec![
+        ("observations", bound::<u8>("observations", given.observations, &shape)?.place()),
+        ("rewards", bound::<f32>("rewards", given.rewards, &[lanes])?.place()),
+        ("costs", bound::<f32>("costs", given.costs, &[lanes])?.place()),
+        ("terminated", bound::<bool>("terminated", given.terminated, &[lanes])?.place()),
+        ("truncated", bound::<bool>("truncated", given.truncated, &[lanes])?.place()),
+    ];
+    if let Some(array) = given.cost_terms {
+        let place = bound::<f32>("cost_terms", array, &[lanes, terms])?.place();
+        places.push(("cost_terms", place));
+    }
+    apart(&places)?;
     let (mut arrays, mut memories) = (Vec::new(), Vec::new());
     for slot in 0..=facts.groups {
         let own = facts.lanes_of(slot);

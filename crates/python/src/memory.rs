@@ -5,6 +5,7 @@ use numpy::{
 };
 use pyo3::exceptions::PyBufferError;
 use pyo3::prelude::*;
+use std::ops::Range;
 
 /// The memory of an array, kept alive by a reference to it.
 ///
@@ -36,6 +37,29 @@ impl<T> AsMut<[T]> for External<T> {
         // SAFETY: as above; the array is writable, and this value alone writes to it.
         unsafe { std::slice::from_raw_parts_mut(self.start, self.length) }
     }
+}
+
+impl<T> External<T> {
+    /// The addresses that it takes.
+    pub fn place(&self) -> Range<usize> {
+        let start = self.start.addr();
+        start..start + self.length * size_of::<T>()
+    }
+}
+
+/// Refuses arrays that share memory: each is written as though nothing else were there.
+pub fn apart(places: &[(&str, Range<usize>)]) -> PyResult<()> {
+    for (index, (name, place)) in places.iter().enumerate() {
+        let shares = |(_, other): &&(&str, Range<usize>)| {
+            place.start.max(other.start) < place.end.min(other.end)
+        };
+        if let Some((other, _)) = places[..index].iter().find(shares) {
+            return Err(PyBufferError::new_err(format!(
+                "{other} and {name} share memory; give each an array of its own"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// The memory of an array that has exactly this type and shape, is contiguous in C order, aligned

@@ -83,6 +83,11 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         let lessons = lessons(text, &config)?;
         config.set_frames(lessons.iter().fold(0, |sum, one| sum.saturating_add(one.frames)));
     }
+    // As the flag does: other settings hang on the length, and --set of those comes after it.
+    if let Some(set) = args.set.iter().rev().find(|set| set.starts_with("frames=")) {
+        let named = |error| Failure::bad(format!("--set '{set}': {error}"));
+        config.set_frames(config.with(set).map_err(named)?.frames);
+    }
     let mut config =
         config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     if let Some(text) = &args.curriculum {
@@ -170,6 +175,9 @@ pub(super) mod tests {
         assert_eq!(config("--preset paper").unwrap().frames, 500_000_000);
         let reference = |line: &str| config(line).unwrap().algorithm_settings.pid_reference_budget;
         assert_eq!((reference(""), reference("--frames 2M")), (Some(201.0), Some(450.0)));
+        assert_eq!(reference("--set frames=2000000"), Some(450.0));
+        let both = "--set algorithm_settings.pid_reference_budget=45 --set frames=2000000";
+        assert_eq!(reference(both), Some(45.0));
         let set = "--frames 2M --set algorithm_settings.pid_reference_budget=45";
         assert_eq!(reference(set), Some(45.0));
     }

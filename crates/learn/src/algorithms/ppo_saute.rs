@@ -38,10 +38,15 @@ impl Shaping for Saute {
     }
 
     fn step(&self, safety: f64, reward: f32, cost: f32) -> (f32, f64) {
+        // With a small gamma it grows beyond all numbers within an episode: so far, and no farther.
         let after = (safety - f64::from(cost) / self.unit) / self.gamma;
+        let after = after.clamp(-LARGEST_STATE, LARGEST_STATE);
         (if after > 0.0 { reward } else { self.unsafe_reward }, after)
     }
 }
+
+/// Largest size of a safety state.
+const LARGEST_STATE: f64 = 1e300;
 
 /// The budget in which the safety state counts: an even spread over the horizon, discounted.
 fn unit(budget: f64, gamma: f64, horizon: f64) -> f64 {
@@ -54,6 +59,18 @@ fn unit(budget: f64, gamma: f64, horizon: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn safety_states_stay_numbers() {
+        let saute = Saute { unit: 1.0, gamma: 0.01, unsafe_reward: -1.0, visible: true };
+        for cost in [0.0, 2.0] {
+            let mut safety = 1.0;
+            for _ in 0..1000 {
+                safety = saute.step(safety, 1.0, cost).1;
+            }
+            assert_eq!(safety, if cost > 1.0 { -LARGEST_STATE } else { LARGEST_STATE });
+        }
+    }
 
     /// The released code's unit (2100 tics) and safety states, worked out apart in double
     /// precision.

@@ -118,7 +118,7 @@ pub struct AlgorithmConfig {
     /// Lagrangian algorithms: change of the multiplier per update and unit of cost per step above
     /// budget.
     pub multiplier_rate: f64,
-    /// Lagrangian and PID algorithms: when the multiplier moves.
+    /// Lagrangian and PID algorithms, IPO: when the multiplier, or IPO's penalty, moves.
     #[serde(default = "every_minibatch")]
     pub multiplier_update: MultiplierUpdate,
     /// What older versions added to the multiplier of a Lagrangian algorithm at once, which made a

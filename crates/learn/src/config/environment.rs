@@ -150,9 +150,16 @@ impl EnvConfig {
     /// Policy steps of its longest episode, if it has tasks of files; those of the benchmark all have
     /// the same, which presets know.
     pub(crate) fn own_episode_steps(&self) -> Option<u32> {
-        let (ids, rules) = (self.env_ids().ok()?, self.rule_set().ok()?);
+        let own = self.env_ids().ok()?.iter().any(|id| id.scenario.file.is_some());
+        own.then(|| self.lengths().into_iter().max())?
+    }
+
+    /// Policy steps of the longest episode of each of its tasks; nothing for ids that are not
+    /// registered.
+    pub(crate) fn lengths(&self) -> Vec<u32> {
+        let (Ok(ids), Ok(rules)) = (self.env_ids(), self.rule_set()) else { return Vec::new() };
         let steps = |id: &EnvId| episode_steps(*id, rules, self.hard, self.frame_skip);
-        ids.iter().any(|id| id.scenario.file.is_some()).then(|| ids.iter().map(steps).max())?
+        ids.iter().map(steps).collect()
     }
 
     /// The cost terms of its episodes; nothing for ids that are not registered, such as those of

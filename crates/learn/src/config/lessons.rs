@@ -23,6 +23,13 @@ impl TrainConfig {
         self.episode_steps = longest.max().unwrap_or(self.episode_steps);
     }
 
+    /// Whether its tasks or lessons have episodes of several lengths.
+    pub(crate) fn lengths_differ(&self) -> bool {
+        let all: Vec<u32> =
+            (0..self.lessons()).flat_map(|one| self.lesson(one).env.lengths()).collect();
+        all.iter().any(|one| one != &all[0])
+    }
+
     /// Number of lessons; 1 without a curriculum.
     #[must_use]
     pub fn lessons(&self) -> usize {

@@ -7,7 +7,7 @@ type Reads = fn(AlgorithmKind) -> bool;
 
 /// Settings by the beginning of their names, the longer ones first, and who reads them.
 const READERS: [(&str, Reads); 15] = [
-    ("multiplier_update", AlgorithmKind::has_multipliers),
+    ("multiplier_update", |one| one.has_multipliers() || one == AlgorithmKind::Ipo),
     ("multiplier_limit", AlgorithmKind::has_multipliers),
     ("multiplier_", |one| {
         use AlgorithmKind::{Cup, Focops, PpoLag, TrpoLag};

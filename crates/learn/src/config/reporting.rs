@@ -11,6 +11,7 @@ pub struct ReportingConfig {
     pub checkpoint_seconds: f64,
     /// Checkpoints that are kept beside the best feasible one.
     pub keep: usize,
-    /// Episodes that means are taken over.
+    /// Episodes that means are taken over, and the deviation and the tail of costs that budgets and
+    /// multipliers follow.
     pub window: usize,
 }

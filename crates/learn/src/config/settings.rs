@@ -48,13 +48,16 @@ const MAY_CHANGE: [&str; 16] = [
 ];
 
 /// Those of them that change nothing that is learned.
-const CHANGE_NOTHING: [&str; 6] = [
+const CHANGE_NOTHING: [&str; 8] = [
     "learning.threads",
     "sampling.samplers",
     "sampling.world_threads",
     "sampling.groups",
     "evaluation",
-    "reporting",
+    // Not its window: how costs scatter over it is what a margin takes off a budget.
+    "reporting.report_seconds",
+    "reporting.checkpoint_seconds",
+    "reporting.keep",
 ];
 
 /// Whether a setting is of a group, or is it.
@@ -252,6 +255,9 @@ mod tests {
             one.unlike(&with(&["frames=99", "learning.threads=7", "evaluation.episodes=3"])),
             None
         );
+        assert_eq!(one.unlike(&with(&["reporting.keep=7"])), None);
+        let (name, ..) = one.unlike(&with(&["reporting.window=7"])).unwrap();
+        assert_eq!(name, "reporting.window");
         let other = with(&["learning.gamma=0.5"]);
         let (name, own, others) = one.unlike(&other).unwrap();
         assert_eq!((name.as_str(), own, others), ("learning.gamma", 0.97.into(), 0.5.into()));

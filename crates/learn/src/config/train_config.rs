@@ -10,8 +10,9 @@ use crate::config::curriculum::Lesson;
 use crate::config::names::names;
 use crate::config::numbers::{Shown, check_number, refuse};
 use crate::config::{
-    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig,
-    LearningConfig, NetworkConfig, Products, ReportingConfig, ReturnNormaliser, SamplingConfig,
+    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, CriticInput, EnvConfig,
+    EvaluationConfig, LearningConfig, NetworkConfig, Products, ReportingConfig, ReturnNormaliser,
+    SamplingConfig,
 };
 use crate::error::LearnError;
 
@@ -162,6 +163,17 @@ impl TrainConfig {
                 &Shown(rate),
                 "null unless network.separate is on",
             );
+        }
+        if learning.critic_inputs.contains(&CriticInput::TimeLeft) && self.lengths_differ() {
+            return refuse(
+                "an input of the critics",
+                &"time-left",
+                "another one for tasks or lessons whose episodes differ in length",
+            );
+        }
+        if learning.critic_rate.is_some() && learning.rate == 0.0 {
+            let allowed = "null where learning.rate is 0: the rate of the critics changes as that does, in proportion";
+            return refuse("the learning rate of the critics", &"above 0", allowed);
         }
         if learning.normaliser == ReturnNormaliser::PopArt && !sampling.synchronous {
             let allowed = "running unless sampling.synchronous is on: actors beside the learner have heads of another scale";

@@ -29,6 +29,13 @@ fn bad_settings_are_refused_by_name() {
         |c| (c.sampling.rollout, c.learning.recurrence) = (48, Some(32)),
         "multiple of the recurrence (32)",
     );
+    refuse(
+        |c| {
+            (c.network.separate, c.learning.critic_rate) = (true, Some(0.001));
+            (c.learning.rate, c.learning.final_rate) = (0.0, Some(0.001));
+        },
+        "null where learning.rate is 0",
+    );
     refuse(|c| c.algorithm_settings.critic_steps = 0, "steps of the critics");
     for algorithm in [AlgorithmKind::PpoSaute, AlgorithmKind::PpoCost] {
         let mut config = TrainConfig { algorithm, ..good.clone() };
