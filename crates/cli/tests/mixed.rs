@@ -24,10 +24,10 @@ fn the_time_left_is_for_episodes_of_one_length() {
     let file = folder.0.join("lava_garden.toml");
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replace("tics = 2100", "tics = 700")).unwrap();
-    let seen = "--set learning.critic_inputs=[time-left] --envs 2 --out run";
+    let seen = r#"--set learning.critic_inputs=["time-left"] --envs 2 --out run"#;
     let said = folder.refused(&format!("train RemedyRushLevel1,lava_garden.toml {SMALL} {seen}"));
     assert!(said.contains("time-left") && said.contains("differ in length"), "{said}");
-    folder.ok(&format!("train lava_garden.toml {SMALL} {seen} --quiet --frames 512"));
+    folder.ok(&format!("train lava_garden.toml {SMALL} {seen} --quiet"));
 }
 
 /// What a run learned and wrote, but for the time that it took.
