@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+from hasard_rs import arguments as _arguments
 from hasard_rs._core import Batch, Worlds, __version__
 from hasard_rs.agent import Agent, Run, report, train
 from hasard_rs.errors import (
@@ -42,7 +43,7 @@ else:
     register_all()
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     import gymnasium
 
@@ -59,10 +60,14 @@ def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
 
     Raises:
         UnknownEnvironment, which names the nearest id; InvalidOption for a value that an argument cannot have; InvalidMap for maps that cannot be
-        played; TypeError for a name that is no argument.
+        played; TypeError for a name that is no argument, or bound by the id (scenario, level).
     """
     from hasard_rs.wrappers.cost import CostWrapper
 
+    _arguments.refuse_task(kwargs)
+    if _arguments.is_whole(kwargs.get("max_episode_steps")):
+        # Gymnasium takes no other integers than Python's.
+        kwargs["max_episode_steps"] = int(kwargs["max_episode_steps"])
     return CostWrapper(_gymnasium.make(f"hasard/{_known(env_id)}", **kwargs))
 
 
@@ -83,7 +88,8 @@ def make_vec(env_id: str | Sequence[str], num_envs: int = 1, **kwargs: Any) -> V
     """
     if not hasattr(_gymnasium, "make_vec") or not hasattr(_gymnasium.vector, "AutoresetMode"):
         raise ImportError("make_vec needs Gymnasium 1.1 or newer: pip install -U gymnasium; make and Worlds work with older ones")
-    if isinstance(env_id, (list, tuple)):
+    _arguments.refuse_task(kwargs)
+    if isinstance(env_id, (list, tuple)) and len(env_id) != 1:
         tasks = [_task(one) for one in env_id]
         if not tasks:
             raise InvalidOption("a batch needs a task; the list of ids is empty")
@@ -93,13 +99,14 @@ def make_vec(env_id: str | Sequence[str], num_envs: int = 1, **kwargs: Any) -> V
             if texts.setdefault(task["scenario"], text) != text:
                 raise InvalidOption(f"two tasks of the batch are called {task['scenario']}; give one of them another name")
         return VectorEnv(tasks=tasks, num_envs=num_envs, **kwargs)
-    known = _known(cast("str", env_id))
+    known = _known(cast("str", env_id[0] if isinstance(env_id, (list, tuple)) else env_id))
     made = _gymnasium.make_vec(f"hasard/{known}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
     return cast("VectorEnv", made)
 
 
-def _task(env_id: str) -> dict[str, Any]:
-    """What makes an environment: scenario, level, and the text of a task of one's own."""
+def _task(env_id: str, given: Iterable[str] = ()) -> dict[str, Any]:
+    """What makes an environment: scenario, level, and the text of a task of one's own; none of them may be among the arguments `given`."""
+    _arguments.refuse_task(given)
     return dict(_gymnasium.spec(f"hasard/{_known(env_id)}").kwargs)
 
 

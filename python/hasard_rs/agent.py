@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from hasard_rs import _core
-from hasard_rs.arguments import check_seed, is_number, over, plain
+from hasard_rs.arguments import check_seed, is_number, is_whole, over, plain
 from hasard_rs.errors import HasardError, InvalidOption
 from hasard_rs.own import from_text
 from hasard_rs.progress import Bar
@@ -240,8 +240,14 @@ class Agent:
         return {"action_format": "dict"} if self.config["env"]["full_actions"] else {}
 
     def begin(self, lanes: int, seed: int = 0) -> Any:
-        """Returns what the agent remembers when episodes begin in so many `lanes`; its draws follow from `seed` and the lane."""
-        return _State(self._trained.begin([(seed + lane) % 2**64 for lane in range(lanes)]), None, None, None)
+        """Returns what the agent remembers when episodes begin in so many `lanes`; its draws follow from `seed` and the lane.
+
+        Raises InvalidOption for lanes that are no number of them; TypeError or ValueError for a seed that is none.
+        """
+        if not is_whole(lanes) or lanes < 0:
+            raise InvalidOption(f"lanes cannot be {lanes!r:.60}; it must be a whole number, 0 or more")
+        first = check_seed(seed)
+        return _State(self._trained.begin([(first + lane) % 2**64 for lane in range(lanes)]), None, None, None)
 
     def act(self, observations: np.ndarray, state: Any = None) -> tuple[Any, Any]:
         """Chooses actions.

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import difflib
 import enum
+import operator
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,6 +22,9 @@ _WORLD = (
 ).split()
 _UPSTREAM = "record_every render_boxes render_segmented".split()
 _VECTOR = "num_envs num_threads autoreset_mode batch_size copy".split()
+# What an id stands for.
+_TASK = ("scenario", "level", "scenario_file", "tasks")
+_WHOLE = ("frame_skip", "frame_stack", "max_episode_steps", "num_envs", "num_threads")
 
 _NAMES = {"hard": "hard_constraint", "size": "resolution", "map": "maps"}
 """The first name of each argument that has two."""
@@ -71,6 +75,13 @@ class Arguments:
             if getattr(self, name) != getattr(usual, name):
                 raise InvalidOption(f"{name} has no effect in {where}; leave it out")
         return self
+
+
+def refuse_task(given: Iterable[str]) -> None:
+    """Makes sure that nobody asks for another task than the id's; `given` are names of arguments. Raises TypeError, which names the first."""
+    for name in given:
+        if name in _TASK:
+            raise TypeError(f"argument '{name}' is bound by the id; leave it out, and give another id for another task")
 
 
 def over(usual: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
@@ -131,9 +142,9 @@ def _env_id(task: dict[str, Any]) -> str:
 
 def of_level(ids: Sequence[str], level: Any, name: str) -> str:
     """Returns the id of a `level` among `ids`, those of the scenario `name`. Raises InvalidOption for a level that it does not have."""
-    if isinstance(level, bool) or not isinstance(level, int) or not 1 <= level <= len(ids):
+    if not is_whole(level) or not 1 <= level <= len(ids):
         raise InvalidOption(f"level cannot be {level!r}; the levels of {name} are 1 to {len(ids)}")
-    return ids[level - 1]
+    return ids[operator.index(level) - 1]
 
 
 def _check(arguments: Arguments) -> None:
@@ -149,13 +160,22 @@ def _check(arguments: Arguments) -> None:
         raise InvalidOption(f"env_stats cannot be {arguments.env_stats!r}; it must be True or False")
     if arguments.infos == "events":
         arguments.world["events"] = True
+    check_no_bools(arguments.world)
     bins = arguments.delta_bins
-    if isinstance(bins, bool) or not isinstance(bins, int) or not 3 <= bins <= 255 or bins % 2 == 0:
+    if not is_whole(bins) or not 3 <= bins <= 255 or bins % 2 == 0:
         raise InvalidOption(f"delta_bins cannot be {bins!r}; it must be an odd number, 3..255")
+    arguments.delta_bins = operator.index(bins)
     if arguments.render_resolution is not None:
         arguments.render_resolution = _core.frame_size("render_resolution", arguments.render_resolution)
     if arguments.seed is not None:
         arguments.seed = check_seed(arguments.seed)
+
+
+def check_no_bools(given: dict[str, Any]) -> None:
+    """Makes sure that True is not taken for 1 in the arguments `given`, by name. Raises InvalidOption where a number is asked for."""
+    for name in _WHOLE:
+        if isinstance(given.get(name), (bool, np.bool_)):
+            raise InvalidOption(f"{name} cannot be {given[name]!r}; it must be a whole number")
 
 
 def plain(value: Any) -> Any:
@@ -171,6 +191,17 @@ def plain(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return type(value)(plain(one) for one in value)
     return value
+
+
+def is_whole(value: Any) -> bool:
+    """Returns whether a `value` is one integer, NumPy's too; True and False are none."""
+    if isinstance(value, (bool, np.bool_)):
+        return False
+    try:
+        operator.index(value)
+    except TypeError:
+        return False
+    return True
 
 
 def is_number(seed: Any) -> bool:

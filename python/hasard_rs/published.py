@@ -7,11 +7,12 @@ frame; `reset` has infos.
 
 from __future__ import annotations
 
+import struct
 from typing import Any
 
 import gymnasium
 
-from hasard_rs.arguments import over
+from hasard_rs.arguments import over, refuse_task
 from hasard_rs.env import Env
 from hasard_rs.registry import LEVELS, Scenario, bare
 from hasard_rs.wrappers.cost import CostPenalty, CostWrapper
@@ -62,6 +63,19 @@ class DoomEnv(Env):
         if not self._reports:
             del info["env_stats"]
 
+    def save(self) -> bytes:
+        """Returns where the environment is, and the cost of the last step, to come back to by `load`."""
+        return struct.pack("<d", self._cost) + super().save()
+
+    def load(self, state: bytes) -> Any:
+        """Comes back to a saved moment, `state`, statistics and cost too. Returns and raises what `Env.load` does."""
+        if not isinstance(state, bytes):
+            raise TypeError(f"a saved moment must be bytes, got {type(state).__name__}")
+        observation = super().load(state[8:])
+        (self._cost,) = struct.unpack_from("<d", state)
+        self._statistics = self._infos.stats(0, float(self._infos.cost[0])) if self._worlds.started else {}
+        return observation
+
     def calculate_cost(self) -> float:
         """Returns the cost of the last step, 0 after a reset."""
         return self._cost
@@ -108,6 +122,7 @@ def register_environment(scenario: str | Scenario, level: int) -> None:
 
 def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
     """Returns an environment by its bare env_id, in a `CostWrapper`; kwargs as of `DoomEnv`. Raises what `hasard_rs.make` does."""
+    refuse_task(kwargs)
     return CostWrapper(gymnasium.make(bare(env_id), **kwargs))
 
 

@@ -32,7 +32,7 @@ class HasardPuffer(pufferlib.PufferEnv):  # type: ignore[name-defined,misc]
     """
 
     def __init__(self, env_id: str, num_envs: int = 1, *, num_threads: int | None = None, buf: Any = None, seed: int = 0, **arguments: Any) -> None:
-        given = _arguments.read({"layout": "chw", **arguments, **hasard_rs._task(env_id)}, vector=True)
+        given = _arguments.read({"layout": "chw", **arguments, **hasard_rs._task(env_id, arguments)}, vector=True)
         given.without("hasard_rs.pufferlib", "action_format", "render_mode", "render_resolution", "infos", "env_stats")
         self.worlds = hasard_rs.Worlds(given.env_id, num_envs, num_threads=num_threads, **given.world)
         self._format = action_format("multi_discrete", self.worlds.nvec, self.worlds.num_deltas, given.delta_bins)

@@ -109,6 +109,10 @@ class _Five(gymnasium.Wrapper[Any, Any, Any, Any]):
     def __init__(self, env: Any) -> None:
         super().__init__(env)
 
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        observation, info = self.env.reset(seed=seed, options=options)
+        return observation, {**info, "cost": 0.0}
+
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         observation, reward, cost, terminated, truncated, info = self.env.step(action)  # type: ignore[misc]
         return observation, reward, terminated, truncated, {**info, "cost": cost}

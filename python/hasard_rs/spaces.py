@@ -154,8 +154,7 @@ class Tuple(ActionFormat):
     def one(self, action: Any) -> Rows:
         self._count(action)
         categorical = [np.asarray(part).reshape(1) if np.size(part) == 1 else part for part in action[: self.groups]]
-        continuous = [_numbers(part, "each delta", np.float32).reshape(1, 1) for part in action[self.groups :]]
-        return self.many((*categorical, *continuous), 1)
+        return self.many((*categorical, *action[self.groups :]), 1)
 
     def many(self, actions: Any, lanes: int) -> Rows:
         if isinstance(actions, np.ndarray) and actions.ndim > 1:
@@ -165,8 +164,16 @@ class Tuple(ActionFormat):
         parts = [self._integers(_column(part, lanes), (lanes,), "each part of the actions") for part in actions[: self.groups]]
         if not self.deltas:
             return np.stack(parts, axis=1), None
-        continuous = [_numbers(part, "each delta", np.float32).reshape(lanes, 1) for part in actions[self.groups :]]
+        continuous = [self._delta(part, self.groups + index, lanes) for index, part in enumerate(actions[self.groups :])]
         return np.stack(parts, axis=1), np.concatenate(continuous, axis=1)
+
+    @staticmethod
+    def _delta(given: Any, part: int, lanes: int) -> np.ndarray:
+        """A delta of each lane in a column."""
+        array = _numbers(given, "each delta", np.float32)
+        if array.size != lanes:
+            raise ValueError(f"part {part} of the action must be a delta, {lanes} in all, one a lane, got shape {array.shape}")
+        return array.reshape(lanes, 1)
 
     def _count(self, actions: Any) -> None:
         if not hasattr(actions, "__len__") or hasattr(actions, "keys"):

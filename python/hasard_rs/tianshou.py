@@ -31,7 +31,7 @@ class HasardVectorEnv:
     def __init__(self, env_id: str, num_envs: int, *, num_threads: int | None = None, **arguments: Any) -> None:
         spec = hasard_rs.spec(env_id)
         arguments = {"layout": "chw", "action_format": "discrete", **arguments}
-        given = _arguments.read({**arguments, **hasard_rs._task(env_id)}, vector=True)
+        given = _arguments.read({**arguments, **hasard_rs._task(env_id, arguments)}, vector=True)
         given.without("hasard_rs.tianshou", "env_stats", "render_mode", "render_resolution")
         if given.action_format in ("tuple", "dict"):
             raise InvalidOption(f"action_format cannot be {given.action_format!r} in hasard_rs.tianshou, whose actions are one array")
@@ -50,29 +50,51 @@ class HasardVectorEnv:
         return self.env_num
 
     def _lanes(self, chosen: Any) -> np.ndarray:
-        return np.arange(self.env_num) if chosen is None else np.atleast_1d(np.asarray(chosen, dtype=np.int64))
+        if chosen is None:
+            return np.arange(self.env_num)
+        lanes = np.atleast_1d(np.asarray(chosen))
+        if lanes.size and lanes.dtype.kind not in "iu":
+            raise TypeError(f"lanes must be integers, got dtype {lanes.dtype}; give the lanes' numbers, 0..={self.env_num - 1}")
+        if lanes.ndim > 1 or ((lanes < 0) | (lanes >= self.env_num)).any():
+            raise InvalidOption(f"lanes cannot be {chosen!r:.60}; they must be a list of numbers, 0..={self.env_num - 1}")
+        return lanes.astype(np.int64)
 
     def reset(self, env_id: Any = None, **kwargs: Any) -> tuple[np.ndarray, np.ndarray]:
         """Starts episodes.
 
         Args:
             env_id: lanes, an int or a list; None: all.
-            kwargs: `seed`, an int (lane i's is seed + i) or a list of one a lane.
+            kwargs: `seed`, an int (lane i's is seed + i) or a list of one for each of these lanes, in their order; None: that of `seed`.
 
         Returns:
             Observations uint8 [m, ...] of these lanes, and infos: an object array [m] of dicts.
+
+        Raises:
+            TypeError or InvalidOption for lanes that are none; TypeError or ValueError for seeds that are none, or of another number.
         """
         lanes = self._lanes(env_id)
         mask = np.zeros(self.env_num, np.bool_)
         mask[lanes] = True
-        seeds, self._seeds = kwargs.get("seed", self._seeds), None
-        if isinstance(seeds, (list, tuple, np.ndarray)) and len(seeds) != self.env_num:
-            each: list[Any] = [None] * self.env_num
-            for lane, seed in zip(lanes, seeds, strict=True):
-                each[lane] = seed
-            seeds = each
+        seeds = kwargs.get("seed")
+        if seeds is None:
+            # One a lane of all.
+            seeds = self._seeds
+        elif not _arguments.is_number(seeds):
+            seeds = self._by_lane(lanes, seeds)
         batch = self.worlds.reset(seeds, None if mask.all() else mask)
+        self._seeds = None
         return batch.observations[lanes], self._info_rows(batch, lanes, lanes)
+
+    def _by_lane(self, lanes: np.ndarray, seeds: Any) -> list[int | None]:
+        """Seeds of these lanes, in their order, as one a lane of all."""
+        if isinstance(seeds, str) or not hasattr(seeds, "__len__"):
+            raise TypeError(f"a seed must be an integer, or a list with one for each lane, got {seeds!r:.60}")
+        if len(seeds) != len(lanes):
+            raise ValueError(f"seed must have one entry for each of the {len(lanes)} lanes that are reset, got {len(seeds)}")
+        each: list[int | None] = [None] * self.env_num
+        for lane, seed in zip(lanes, seeds, strict=True):
+            each[lane] = None if seed is None else _arguments.check_seed(seed)
+        return each
 
     def step(self, action: Any, id: Any = None) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # noqa: A002
         """Steps lanes.

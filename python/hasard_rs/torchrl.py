@@ -35,7 +35,7 @@ class HasardEnv(EnvBase):
 
     def __init__(self, env_id: str, num_envs: int = 1, *, num_threads: int | None = None, device: Any = "cpu", **arguments: Any) -> None:
         super().__init__(device=torch.device(device), batch_size=torch.Size([num_envs]))
-        given = _arguments.read({"layout": "chw", **arguments, **hasard_rs._task(env_id)}, vector=True)
+        given = _arguments.read({"layout": "chw", **arguments, **hasard_rs._task(env_id, arguments)}, vector=True)
         given.without("hasard_rs.torchrl", "action_format", "delta_bins", "render_mode", "render_resolution", "infos", "env_stats")
         if given.world.get("full_actions"):
             raise hasard_rs.InvalidOption("full_actions have continuous parts; use GymWrapper over hasard_rs.make_vec for them")

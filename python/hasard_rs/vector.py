@@ -79,6 +79,9 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
             raise ImportError("VectorEnv needs Gymnasium 1.1 or newer: pip install -U gymnasium; Env and hasard_rs.Worlds work with older ones")
         self.closed = False
         given = _arguments.read(arguments, vector=True)
+        _arguments.check_no_bools({"num_envs": num_envs, "num_threads": num_threads})
+        if not isinstance(copy, (bool, np.bool_)):
+            raise InvalidOption(f"copy cannot be {copy!r}; it must be True or False")
         self._arguments = {**arguments, "num_envs": num_envs, "num_threads": num_threads, "batch_size": batch_size, "copy": copy}
         self._given = given
         if isinstance(batch_size, bool) or not hasattr(batch_size, "__index__"):
@@ -151,7 +154,8 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         """Starts episodes.
 
         Args:
-            seed: an int s seeds lane i with s + i, a sequence has one entry a lane; None goes on with the lane's stream. Not negative.
+            seed: an int s seeds lane i with s + i, a sequence has one entry a lane; None goes on with the lane's stream, or
+                begins it by the argument `seed`. Not negative.
             options: `options["reset_mask"]` (bool [num_envs]) resets those lanes only; the others are returned as they are.
 
         Returns:
@@ -211,6 +215,9 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
             raise ValueError(
                 f"If seeds are passed as a list the length must match num_envs={self.num_envs} but got length={len(seeds)}."
             )
+        first = self._given.seed
+        if first is not None and not self._worlds.started:
+            return [_arguments.check_seed(first + lane) if one is None else one for lane, one in enumerate(seeds)]
         return seeds
 
     def _mask(self, options: dict[str, Any] | None) -> np.ndarray | None:

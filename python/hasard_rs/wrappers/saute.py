@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import numbers
 from typing import Any
 
 import gymnasium
 from gymnasium.utils import RecordConstructorArgs
 
 from hasard_rs.errors import InvalidOption
+from hasard_rs.wrappers import moments
 
 
 class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
@@ -23,7 +26,7 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         unsafe_reward: of each step that finds nothing left.
 
     Raises:
-        InvalidOption for a saute_gamma that is no discount.
+        InvalidOption for a saute_gamma that is no discount, or a budget that is no finite number of at least 0.
     """
 
     def __init__(
@@ -31,6 +34,8 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     ) -> None:
         if not 0.0 < saute_gamma <= 1.0:
             raise InvalidOption(f"saute_gamma cannot be {saute_gamma!r}; it must be above 0, at most 1")
+        if budget is not None and not (isinstance(budget, numbers.Real) and math.isfinite(budget) and budget >= 0):
+            raise InvalidOption(f"budget cannot be {budget!r}; it must be a finite number, 0 or more")
         RecordConstructorArgs.__init__(self, saute_gamma=saute_gamma, budget=budget, unsafe_reward=unsafe_reward)
         gymnasium.Wrapper.__init__(self, env)
         steps = env.get_wrapper_attr("max_episode_steps")
@@ -53,3 +58,22 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         info["safety_state"] = self.safety_state
         safe = self.safety_state > 0
         return observation, float(reward) if safe else self.unsafe_reward, terminated, truncated, info
+
+    def save(self) -> bytes:
+        """Returns where the environment and this wrapper are, to come back to by `load`. Raises what `Env.save` does."""
+        return moments.save(self, self.safety_state)
+
+    def load(self, state: bytes) -> Any:
+        """Comes back to a saved moment, which counts as a reset where one came before it.
+
+        Args:
+            state: what `save` gave, of an environment made and wrapped alike.
+
+        Returns:
+            The environment's observation of that moment.
+
+        Raises:
+            InvalidOption for bytes that are spoiled, or of another environment; nothing has changed then.
+        """
+        observation, (self.safety_state,) = moments.load(self, state, 1)
+        return observation
