@@ -76,9 +76,13 @@ class Infos:
         if self.full:
             info = {"position": self.worlds.positions[lane], "episode_seed": self.worlds.episode_seeds[lane]}
         if self.env_stats:
-            statistics = np.array([[value for _, value in self.worlds.stats(lane)]])
-            info["env_stats"] = {name: float(column[0]) for name, column in self._stats(np.zeros(1), statistics).items()}
+            info["env_stats"] = self.stats(lane, 0.0)
         return info
+
+    def stats(self, lane: int, cost: float) -> dict[str, float]:
+        """Returns the statistics of a lane's running episode, which has had this cost so far."""
+        statistics = np.array([[value for _, value in self.worlds.stats(lane)]])
+        return {name: float(column[0]) for name, column in self._stats(np.array([cost]), statistics).items()}
 
 
 def _by_lane(batch: Any) -> Any:
