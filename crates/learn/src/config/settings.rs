@@ -255,8 +255,7 @@ mod tests {
             one.unlike(&with(&["frames=99", "learning.threads=7", "evaluation.episodes=3"])),
             None
         );
-        assert_eq!(one.unlike(&with(&["reporting.keep=7"])), None);
-        let (name, ..) = one.unlike(&with(&["reporting.window=7"])).unwrap();
+        let (name, ..) = one.unlike(&with(&["reporting.window=7", "reporting.keep=7"])).unwrap();
         assert_eq!(name, "reporting.window");
         let other = with(&["learning.gamma=0.5"]);
         let (name, own, others) = one.unlike(&other).unwrap();
@@ -286,7 +285,6 @@ mod tests {
     fn what_others_hang_on_is_not_set_alone() {
         for (setting, instead) in [
             ("env.frame_skip=2", "--frame-skip"),
-            ("env.hard=true", "--hard"),
             ("env.rules=released", "--rules"),
             ("preset=quick", "--preset"),
             ("algorithm=PPO", "--algo"),
