@@ -84,7 +84,7 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
             raise InvalidOption(f"copy cannot be {copy!r}; it must be True or False")
         self._arguments = {**arguments, "num_envs": num_envs, "num_threads": num_threads, "batch_size": batch_size, "copy": copy}
         self._given = given
-        if isinstance(batch_size, bool) or not hasattr(batch_size, "__index__"):
+        if not _arguments.is_whole(batch_size):
             raise InvalidOption(f"batch_size cannot be {batch_size!r}; it must be a whole number")
         if batch_size and (batch_size < 0 or num_envs % batch_size):
             raise InvalidOption(f"batch_size cannot be {batch_size}; it must divide num_envs ({num_envs}), or be 0 for all lanes")

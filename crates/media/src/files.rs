@@ -175,14 +175,25 @@ pub fn is_special(kind: &std::fs::Metadata) -> bool {
     !kind.is_file() && !kind.is_dir()
 }
 
+/// Opens a regular file. A pipe in its place would be waited for, and with it whatever is locked
+/// meanwhile.
+///
+/// # Errors
+/// When it cannot be opened, or is no regular file.
+pub fn open_regular(path: &Path) -> std::io::Result<std::fs::File> {
+    if std::fs::metadata(path)?.is_file() {
+        std::fs::File::open(path)
+    } else {
+        Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, NO_FILE))
+    }
+}
+
 /// Whether another process has a lock on a regular file.
 #[must_use]
 pub fn is_locked(path: &Path) -> bool {
     // Shared, and let go at once: a process that locks it this very moment is hardly ever in its way.
-    std::fs::metadata(path).is_ok_and(|kind| kind.is_file())
-        && std::fs::File::open(path).is_ok_and(|file| {
-            matches!(file.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock))
-        })
+    open_regular(path)
+        .is_ok_and(|file| matches!(file.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock)))
 }
 
 /// Reads a file that must not be larger than `limit` bytes, so that a wrong name cannot fill the

@@ -7,11 +7,13 @@ from typing import Any
 import gymnasium
 from gymnasium.utils import RecordConstructorArgs
 
-from hasard_rs.wrappers import moments
+from hasard_rs.wrappers.moments import Moments
 
 
-class CostWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
+class CostWrapper(Moments, RecordConstructorArgs):
     """Makes sure that `info["cost"]` of `env` is there, at reset too, and keeps the episode's sum in `episode_cost`."""
+
+    _own = "episode_cost"
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
         RecordConstructorArgs.__init__(self)
@@ -44,25 +46,6 @@ class CostWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     def process_cost(self, info: dict[str, Any]) -> float:
         """Returns the cost in a step's info, which is put in, 0.0, if it is missing."""
         return float(info.setdefault("cost", 0.0))
-
-    def save(self) -> bytes:
-        """Returns where the environment and this wrapper are, to come back to by `load`. Raises what `Env.save` does."""
-        return moments.save(self, self.episode_cost)
-
-    def load(self, state: bytes) -> Any:
-        """Comes back to a saved moment, which counts as a reset where one came before it.
-
-        Args:
-            state: what `save` gave, of an environment made and wrapped alike.
-
-        Returns:
-            The environment's observation of that moment.
-
-        Raises:
-            InvalidOption for bytes that are spoiled, or of another environment; nothing has changed then.
-        """
-        observation, (self.episode_cost,) = moments.load(self, state, 1)
-        return observation
 
 
 class CostPenalty(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, ClassVar
 
 import gymnasium
 from gymnasium.wrappers import OrderEnforcing, TimeLimit
@@ -17,45 +17,46 @@ _VERSION = 1
 _KEPT: tuple[tuple[type[Any], str], ...] = ((OrderEnforcing, "_has_reset"), (TimeLimit, "_elapsed_steps"))
 
 
-def save(wrapper: gymnasium.Wrapper[Any, Any, Any, Any], *own: float) -> bytes:
-    """Returns a moment: the wrapper's own numbers, those of Gymnasium's wrappers below it, and what `save` of the environment gives.
+class Moments(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """A wrapper whose number of the episode, the attribute that `_own` names, is saved and loaded along with the environment."""
 
-    Raises AttributeError for an environment that has no `save`, and what that raises.
-    """
-    # None, of steps before a reset, is -1.
-    numbers = [*own, *(-1 if getattr(env, name) is None else getattr(env, name) for env, name in _between(wrapper))]
-    rest = struct.pack(f"<{len(numbers)}d", *numbers) + wrapper.env.get_wrapper_attr("save")()
-    return _head(wrapper) + struct.pack("<I", zlib.crc32(rest)) + rest
+    _own: ClassVar[str]
 
+    def save(self) -> bytes:
+        """Returns where the environment and this wrapper are, to come back to by `load`. Raises what `Env.save` does."""
+        # None, of steps before a reset, is -1.
+        below = (-1 if getattr(env, name) is None else getattr(env, name) for env, name in _between(self))
+        numbers = [getattr(self, self._own), *below]
+        rest = struct.pack(f"<{len(numbers)}d", *numbers) + self.env.get_wrapper_attr("save")()
+        return _head(self) + struct.pack("<I", zlib.crc32(rest)) + rest
 
-def load(wrapper: gymnasium.Wrapper[Any, Any, Any, Any], state: bytes, count: int) -> tuple[Any, list[float]]:
-    """Comes back to a moment that `save` gave of a wrapper made alike.
+    def load(self, state: bytes) -> Any:
+        """Comes back to a saved moment, which counts as a reset where one came before it.
 
-    Args:
-        wrapper: whose.
-        state: the moment.
-        count: of the wrapper's own numbers.
+        Args:
+            state: what `save` gave, of an environment made and wrapped alike.
 
-    Returns:
-        The observation, and the wrapper's own numbers.
+        Returns:
+            The environment's observation of that moment.
 
-    Raises:
-        InvalidOption for bytes that are spoiled, or of something else; TypeError for what is no bytes. Nothing has changed then.
-    """
-    if not isinstance(state, bytes):
-        raise TypeError(f"a saved moment must be bytes, got {type(state).__name__}")
-    head, below = _head(wrapper), list(_between(wrapper))
-    form = f"<{count + len(below)}d"
-    start = len(head) + 4
-    rest = state[start:]
-    if not state.startswith(head) or len(rest) < struct.calcsize(form) or state[len(head) : start] != struct.pack("<I", zlib.crc32(rest)):
-        name = type(wrapper).__name__
-        raise InvalidOption(f"state cannot be these bytes, which are no moment of this {name}, or spoiled; give what save of one made alike gave")
-    numbers = struct.unpack_from(form, rest)
-    observation = wrapper.env.get_wrapper_attr("load")(rest[struct.calcsize(form) :])
-    for (env, name), number in zip(below, numbers[count:], strict=True):
-        setattr(env, name, bool(number) if name == "_has_reset" else None if number < 0 else int(number))
-    return observation, list(numbers[:count])
+        Raises:
+            InvalidOption for bytes that are spoiled, or of another environment; TypeError for what is no bytes. Nothing has changed then.
+        """
+        if not isinstance(state, bytes):
+            raise TypeError(f"a saved moment must be bytes, got {type(state).__name__}")
+        head, below = _head(self), list(_between(self))
+        form = f"<{1 + len(below)}d"
+        start = len(head) + 4
+        rest = state[start:]
+        if not state.startswith(head) or len(rest) < struct.calcsize(form) or state[len(head) : start] != struct.pack("<I", zlib.crc32(rest)):
+            name = type(self).__name__
+            raise InvalidOption(f"state cannot be these bytes, which are no moment of this {name}, or spoiled; give what save of one made alike gave")
+        own, *numbers = struct.unpack_from(form, rest)
+        observation = self.env.get_wrapper_attr("load")(rest[struct.calcsize(form) :])
+        for (env, name), number in zip(below, numbers, strict=True):
+            setattr(env, name, bool(number) if name == "_has_reset" else None if number < 0 else int(number))
+        setattr(self, self._own, own)
+        return observation
 
 
 def _head(wrapper: Any) -> bytes:

@@ -10,10 +10,10 @@ import gymnasium
 from gymnasium.utils import RecordConstructorArgs
 
 from hasard_rs.errors import InvalidOption
-from hasard_rs.wrappers import moments
+from hasard_rs.wrappers.moments import Moments
 
 
-class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
+class Saute(Moments, RecordConstructorArgs):
     """Counts down what is left of the budget: a step that finds nothing left is rewarded with `unsafe_reward`.
 
     The state starts at 1 and follows z' = (z - cost / budget) / gamma (equation 3 of the paper); it is in `info["safety_state"]`. The budget
@@ -28,6 +28,8 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     Raises:
         InvalidOption for a saute_gamma that is no discount, or a budget that is no finite number of at least 0.
     """
+
+    _own = "safety_state"
 
     def __init__(
         self, env: gymnasium.Env[Any, Any], saute_gamma: float = 0.99, *, budget: float | None = None, unsafe_reward: float = -1.0
@@ -58,22 +60,3 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         info["safety_state"] = self.safety_state
         safe = self.safety_state > 0
         return observation, float(reward) if safe else self.unsafe_reward, terminated, truncated, info
-
-    def save(self) -> bytes:
-        """Returns where the environment and this wrapper are, to come back to by `load`. Raises what `Env.save` does."""
-        return moments.save(self, self.safety_state)
-
-    def load(self, state: bytes) -> Any:
-        """Comes back to a saved moment, which counts as a reset where one came before it.
-
-        Args:
-            state: what `save` gave, of an environment made and wrapped alike.
-
-        Returns:
-            The environment's observation of that moment.
-
-        Raises:
-            InvalidOption for bytes that are spoiled, or of another environment; nothing has changed then.
-        """
-        observation, (self.safety_state,) = moments.load(self, state, 1)
-        return observation

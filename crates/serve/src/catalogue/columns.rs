@@ -1,6 +1,6 @@
 //! The numbers of a `metrics.jsonl`, a column a name.
 
-use super::files::open;
+use hasard_media::files::open_regular;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -32,7 +32,7 @@ impl Columns {
     /// run takes rows back, another run takes its place) is read anew; of one that is gone nothing
     /// is left.
     pub fn catch_up(&mut self, path: &Path) -> std::io::Result<()> {
-        let opened = open(path);
+        let opened = open_regular(path);
         if !opened.as_ref().is_ok_and(|file| self.continues(file).unwrap_or(false)) {
             *self = Columns::default();
         }

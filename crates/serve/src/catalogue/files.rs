@@ -1,7 +1,5 @@
 //! Files of runs: when they are others, and reading them bounded.
 
-use std::fs::File;
-use std::io;
 use std::path::Path;
 use std::time::SystemTime;
 
@@ -32,16 +30,6 @@ const LARGEST_FILE: u64 = 64 << 20;
 pub(crate) fn read(path: &Path) -> Option<String> {
     let size = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?.len();
     (size <= LARGEST_FILE).then(|| std::fs::read_to_string(path).ok()).flatten()
-}
-
-/// Opens a regular file. A pipe in its place would be waited for, and with it whatever is locked
-/// meanwhile.
-pub(crate) fn open(path: &Path) -> io::Result<File> {
-    if std::fs::metadata(path)?.is_file() {
-        File::open(path)
-    } else {
-        Err(io::Error::new(io::ErrorKind::InvalidInput, hasard_media::files::NO_FILE))
-    }
 }
 
 /// Whether a training has this run's folder.

@@ -2,8 +2,9 @@
 
 use super::columns::Columns;
 use super::evaluated::{self, Stamped};
-use super::files::{Stamp, at_once, is_held, open};
+use super::files::{Stamp, at_once, is_held};
 use super::notes::{Notes, TRASH};
+use hasard_media::files::open_regular;
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -335,7 +336,7 @@ fn folders_of_runs(top: &Path, folder: &Path, depth: usize, found: &mut Vec<Foun
 
 /// The last whole row of a file.
 fn last_row(path: &Path, bytes: u64) -> Option<Map<String, Value>> {
-    let mut file = open(path).ok()?;
+    let mut file = open_regular(path).ok()?;
     file.seek(SeekFrom::Start(bytes.saturating_sub(TAIL))).ok()?;
     let mut tail = Vec::new();
     file.take(TAIL).read_to_end(&mut tail).ok()?;
