@@ -1,9 +1,10 @@
 // Experiments side by side: a facet for each environment, one legend that switches curves, means over seeds, return against cost.
 import { ask, make, number } from '/dom.js';
 import { Chart, Shared } from '/chart.js';
-import { column, folded } from '/curves.js';
+import { by_seed, column, folded } from '/curves.js';
 import { picker, title_of, USUAL } from '/metrics.js';
 import { env_name, labels } from '/names.js';
+import { repeated } from '/rows.js';
 import { scatter } from '/scatter.js';
 import { settingsTable } from '/settings.js';
 import { colour, dash } from '/svg.js';
@@ -99,8 +100,11 @@ export class Comparison {
   series(one, name) {
     if (this.hidden.has(one.label.text)) return [];
     const ink = { colour: colour(one.place), dash: dash(one.place) };
-    const own = this.runs.filter((run) => run.experiment === one.key && this.data[run.id]);
-    const curves = own.map((run) => ({ name: `${one.label.text}, seed ${run.seed}`, ...ink, ...column(this.data[run.id], name, this.shared.over, one.skip) }));
+    const all = this.runs.filter((run) => run.experiment === one.key && this.data[run.id]);
+    const { counted, repeats } = by_seed(all);
+    // A mean is of each seed once; each for itself, all are there.
+    const own = this.seeds.checked ? counted : all;
+    const curves = own.map((run) => ({ name: `${one.label.text}, seed ${run.seed}${repeats.includes(run) ? ' (repeats)' : ''}`, ...ink, ...column(this.data[run.id], name, this.shared.over, one.skip) }));
     if (!this.seeds.checked) return curves;
     const text = own.length > 1 ? `${one.label.text} (${own.length} seeds)` : one.label.text;
     return [...(own.length > 1 ? curves.map((curve) => ({ ...curve, kind: 'thin' })) : []), { name: text, ...ink, ...folded(curves) }];
@@ -118,7 +122,7 @@ export class Comparison {
     const said = (one) => (one ? `${number(one.value)}${one.low == null ? '' : ` [${number(one.low)}, ${number(one.high)}]`}` : '–');
     const rows = facets.flatMap(({ env, source, rows: all }) => all.map((row) => {
       const within = row.cost && row.cost.value <= row.budget;
-      return make('tr', {}, make('td', {}, env_name(env)), make('th', { scope: 'row' }, of(row.experiment)?.label.text ?? row.algo), make('td', { class: 'number' }, String(row.n)), make('td', { class: 'number' }, said(row.return)),
+      return make('tr', {}, make('td', {}, env_name(env)), make('th', { scope: 'row' }, of(row.experiment)?.label.text ?? row.algo), make('td', { class: 'number' }, `${row.n}${repeated(row.repeats)}`), make('td', { class: 'number' }, said(row.return)),
         make('td', { class: `number ${within ? 'good' : 'bad'}` }, `${said(row.cost)} of ${number(row.budget)} ${within ? 'within' : 'over'}`), make('td', { class: 'pale' }, source === 'evaluation' ? 'closing evaluations' : 'latest training episodes'));
     }));
     const heads = make('tr', {}, ...['environment', 'experiment', 'seeds', 'return', 'cost of budget', 'from'].map((head, k) => make('th', { scope: 'col', class: k > 1 && k < 5 ? 'number' : '' }, head)));

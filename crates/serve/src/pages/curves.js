@@ -37,6 +37,16 @@ export function estimate(values) {
   return { mean, half: values.length > 1 ? (T[values.length - 2] ?? 1.96) * Math.sqrt(variance / values.length) : null };
 }
 
+// Runs of one experiment, each seed once: of several runs of a seed the one that got furthest counts, as in the report. A seed
+// that counted twice would make the interval too narrow.
+export function by_seed(runs) {
+  const furthest = new Map();
+  const frames = (run) => run.last?.frames ?? 0;
+  for (const run of runs) if (!furthest.has(run.seed) || frames(run) > frames(furthest.get(run.seed))) furthest.set(run.seed, run);
+  const counts = (run) => furthest.get(run.seed) === run;
+  return { counted: runs.filter(counts), repeats: runs.filter((run) => !counts(run)) };
+}
+
 // Curves of several seeds as their mean with its interval, as far as the shortest goes: beyond, the mean would be of other seeds.
 export function folded(curves) {
   const all = curves.filter((curve) => curve.x.length);

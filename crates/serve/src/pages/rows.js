@@ -1,16 +1,19 @@
 import { make, number } from '/dom.js';
-import { estimate } from '/curves.js';
+import { by_seed, estimate } from '/curves.js';
 import { env_name, path_rest } from '/names.js';
 import { short } from '/scale.js';
 import { duration, interval, verdict } from '/strip.js';
 
 const minus = -Infinity;
 // Heads of the columns, whether they are numbers, and what rows are sorted by; a name with a minus before it is the other way round.
-const HEADS = [['experiment', false, (row) => `${row.algo} ${row.rest}`], ['environment', false, (row) => row.env], ['seeds', true, (row) => row.runs.length], ['evaluation return', true, (row) => row.evaluated?.return?.mean ?? minus], ['evaluation cost', true, (row) => row.evaluated?.costs[0]?.cost?.mean ?? minus],
+const HEADS = [['experiment', false, (row) => `${row.algo} ${row.rest}`], ['environment', false, (row) => row.env], ['seeds', true, (row) => row.seeds], ['evaluation return', true, (row) => row.evaluated?.return?.mean ?? minus], ['evaluation cost', true, (row) => row.evaluated?.costs[0]?.cost?.mean ?? minus],
   ['training return', true, (row) => row.training.return?.mean ?? minus], ['training cost', true, (row) => row.training.cost?.mean ?? minus], ['frames', true, (row) => row.frames], ['state', false, (row) => row.state]];
 // A training that has its frames and is still closing is at work too.
 const at_work = ({ state }) => state === 'running' || state === 'evaluating';
 const ORDER = { surely: 3, mean: 2, over: 1, unknown: 0 };
+
+// How many runs stand beside the seeds without counting.
+export const repeated = (count) => (count ? ` + ${count} repeat${count === 1 ? '' : 's'}` : '');
 
 // Several estimates as one: of a single run its own interval over episodes, of more the interval over seeds.
 function over_seeds(all) {
@@ -19,8 +22,9 @@ function over_seeds(all) {
   return estimate(known.map((one) => one.mean));
 }
 
-// What a row shows: of one run, or of all runs of an experiment.
-export function summary(runs, label) {
+// What a row shows: of one run, or of all runs of an experiment. `all` of them can be picked; numbers are of each seed once.
+export function summary(all, label) {
+  const { counted: runs, repeats } = by_seed(all);
   const [first] = runs;
   const evaluated = runs.map((run) => run.evaluation).filter((one) => one?.return);
   const plain = (name) => over_seeds(runs.map((run) => (run.last[name] == null ? null : { mean: run.last[name], half: null })));
@@ -29,15 +33,15 @@ export function summary(runs, label) {
     const kept = cost == null ? 'unknown' : evaluated.length === 1 ? one.kept : cost.half != null && cost.mean + cost.half <= one.budget ? 'surely' : cost.mean <= one.budget ? 'mean' : 'over';
     return { ...one, cost, kept };
   });
-  const count = (state) => runs.filter((run) => run.state === state).length;
+  const count = (state) => all.filter((run) => run.state === state).length;
   const states = ['running', 'evaluating', 'done', 'stopped'].filter(count);
-  const left = Math.max(0, ...runs.filter((run) => run.state === 'running' && run.total && run.last.fps).map((run) => (run.total - (run.last.frames ?? 0)) / run.last.fps));
+  const left = Math.max(0, ...all.filter((run) => run.state === 'running' && run.total && run.last.fps).map((run) => (run.total - (run.last.frames ?? 0)) / run.last.fps));
   return {
-    runs, env: first.env, algo: first.algo, rest: label.rest, full: label.full, budget: first.budget, state: states[0],
+    runs: all, seeds: runs.length, repeats: repeats.map((run) => run.id), env: first.env, algo: first.algo, rest: label.rest, full: label.full, budget: first.budget, state: states[0],
     evaluated: evaluated.length ? { return: over_seeds(evaluated.map((one) => one.return)), costs, n: evaluated.length, episodes: evaluated[0].episodes } : null,
     training: { return: plain('return_mean'), cost: plain('cost_mean') },
     frames: runs.reduce((sum, run) => sum + (run.last.frames ?? 0), 0), total: runs.reduce((sum, run) => sum + (run.total ?? 0), 0),
-    states: states.map((state) => (runs.length > 1 ? `${count(state)} ${state}` : state)).join(', ') + (left ? `, ${duration(left)} left` : ''),
+    states: states.map((state) => (all.length > 1 ? `${count(state)} ${state}` : state)).join(', ') + (left ? `, ${duration(left)} left` : ''),
   };
 }
 
@@ -93,7 +97,7 @@ export class Rows {
 
   name(key, what, seed, is_open) {
     const [run] = what.runs;
-    if (seed) return [make('a', { href: `#run?id=${run.id}`, 'data-run': run.id }, `seed ${run.seed}`), make('span', { class: 'note' }, [path_rest(run), ...(run.notes?.tags ?? []).map((tag) => `#${tag}`)].filter(Boolean).join(' '))];
+    if (seed) return [make('a', { href: `#run?id=${run.id}`, 'data-run': run.id }, `seed ${run.seed}`), ...(what.again ? [make('span', { class: 'note', title: 'Another run of these settings and this seed got further or as far: this one does not count.' }, 'repeats')] : []), make('span', { class: 'note' }, [path_rest(run), ...(run.notes?.tags ?? []).map((tag) => `#${tag}`)].filter(Boolean).join(' '))];
     const tags = [...new Set(what.runs.flatMap((one) => one.notes?.tags ?? []))];
     const note = make('span', { class: 'note', title: what.full }, [what.rest, ...tags.map((tag) => `#${tag}`)].filter(Boolean).join(' '));
     if (what.runs.length === 1) return [make('a', { href: `#run?id=${run.id}`, 'data-run': run.id }, what.algo), note, make('span', { class: 'note' }, path_rest(run))];
@@ -106,7 +110,8 @@ export class Rows {
     cells[0].replaceChildren(...this.name(key, what, seed, is_open));
     cells[1].textContent = seed ? '' : env_name(what.env);
     cells[1].title = what.env;
-    cells[2].textContent = seed ? '' : what.runs.length === 1 ? `seed ${what.runs[0].seed}` : what.runs.length;
+    cells[2].textContent = seed ? '' : `${what.seeds === 1 ? `seed ${what.runs[0].seed}` : what.seeds}${repeated(what.repeats.length)}`;
+    cells[2].title = what.repeats.length ? 'Runs of equal settings and seed: the one that got furthest counts.' : '';
     const found = what.evaluated;
     cells[3].textContent = interval(found?.return);
     cells[3].title = found ? (found.n > 1 ? `mean of ${found.n} seeds, each over ${found.episodes} closing episodes; ± half the 95 % interval over seeds` : `${found.episodes} closing episodes of the selected checkpoint`) : 'no checkpoint was evaluated yet';
@@ -119,8 +124,8 @@ export class Rows {
     row.progress.hidden = share == null || share >= 1;
     row.progress.value = share ?? 0;
     row.progress.setAttribute('aria-label', `Progress of ${what.algo} in ${env_name(what.env)}`);
-    row.percent.textContent = `${short(what.frames / what.runs.length)}${share != null && share < 1 ? `, ${Math.floor(100 * share)} %` : ''}`;
-    row.percent.title = what.runs.length > 1 ? 'frames of a run, on average' : 'frames';
+    row.percent.textContent = `${short(what.frames / what.seeds)}${share != null && share < 1 ? `, ${Math.floor(100 * share)} %` : ''}`;
+    row.percent.title = what.seeds > 1 ? 'frames of a run, on average' : 'frames';
     cells[8].textContent = what.states;
     cells[8].className = at_work(what) ? 'good' : 'pale';
   }

@@ -50,7 +50,7 @@ export function runs(main, query) {
     every.hidden = all.every((row) => row.runs.every((run) => chosen.has(run.id))) || chosen.size >= CHOSEN;
     const shown = all.slice(0, ROWS).flatMap((row) => {
       const seeds = row.runs.length > 1 && open.has(row.key) ? row.runs.slice(0, ROWS) : [];
-      return [{ key: row.key, summary: row }, ...seeds.map((run) => ({ key: run.id, summary: summary([run], { rest: '', full: '' }), seed: true }))];
+      return [{ key: row.key, summary: row }, ...seeds.map((run) => ({ key: run.id, summary: { ...summary([run], { rest: '', full: '' }), again: row.repeats.includes(run.id) }, seed: true }))];
     });
     rows.show(shown, chosen, open, wanted.sort);
   }
