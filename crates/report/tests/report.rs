@@ -591,7 +591,7 @@ fn a_closing_evaluation_is_the_headline() {
     };
     // 41 with an upper end of 45 of 50; nothing of the later eval.jsonl.
     assert_eq!(line("| PPOPID |"), "| PPOPID | **7.50** | 41.00 ✓ |");
-    let row = line("| Armament Burden | 1 | PPOPID | 1 |");
+    let row = line("| Armament Burden | 1 | PPOPID | preset paper, rules tables, 1M frames | 1 |");
     assert!(
         row.contains("| 800k | 20 | 7.50 ± 0.50 | 41.00 ± 4.00 ✓ | 45.00 | 50 | 10 % | 70.50 |"),
         "{row}"

@@ -120,6 +120,25 @@ fn experiments_that_print_alike_all_have_a_table() {
     );
 }
 
+/// Agents of one algorithm and seed that were trained under other options: each says under which.
+#[test]
+fn selected_checkpoints_say_what_options_they_are_of() {
+    let folder = Folder::new("options");
+    for (name, options, earned) in
+        [("soft", "", 41.0), ("hard", ",\"hard\":true", 43.0), ("skip", ",\"frame_skip\":2", 45.0)]
+    {
+        close(&run(&folder, name, ENV, "PPO", 1e6, options), earned, 1e6, 0.5);
+    }
+    let (_, text, _) = report(&folder);
+    let own = text.split("## Selected checkpoints").nth(1).unwrap().split("\n## ").next().unwrap();
+    for (options, earned) in [("hard true", "43.00"), ("frame_skip 2", "45.00")] {
+        let row = own.lines().find(|line| line.contains(earned)).expect(own);
+        assert!(row.contains(&format!("| PPO | {options} |")), "{row}");
+    }
+    // What all share stands above the table.
+    assert!(own.contains("preset paper, rules tables"), "{own}");
+}
+
 /// Each task of a mixture has its own episodes; those of a third are nobody's.
 #[test]
 fn episodes_of_several_tasks_count_by_task() {

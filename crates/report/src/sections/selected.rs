@@ -1,5 +1,6 @@
 //! The agents that one gets from runs, rather than the training that made them: a row a run.
 
+use super::setting;
 use crate::document::{Block, Cell, Mark, Section, Table, frames, number};
 use crate::group::{Group, Source, scenario_name};
 use crate::run::{Constraint, Run};
@@ -11,7 +12,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
     for group in groups {
         let evaluated: Vec<&Run> =
             group.runs.iter().filter(|run| run.evaluated("return_mean").is_some()).collect();
-        rows.extend(evaluated.iter().map(|run| row(run)));
+        rows.extend(evaluated.iter().map(|run| row(run, setting(group))));
         if evaluated.len() > 1 {
             rows.push(mean_row(group, evaluated.len()));
         }
@@ -20,6 +21,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
         "scenario",
         "level",
         "algorithm",
+        "options",
         "seed",
         "frames",
         "minutes",
@@ -43,11 +45,11 @@ pub(super) fn section(groups: &[Group]) -> Section {
              mean cost of the costliest tenth of episodes. In the rows of means ± is over seeds."
                 .into(),
         ],
-        blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table.folded(&["level", "frames"]))] },
+        blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table.folded(&["level", "options", "frames"]))] },
     }
 }
 
-fn row(run: &Run) -> Vec<Cell> {
+fn row(run: &Run, options: String) -> Vec<Cell> {
     let config = &run.config;
     let minutes = run
         .rows
@@ -63,6 +65,7 @@ fn row(run: &Run) -> Vec<Cell> {
         Cell::text(scenario_name(&config.scenario)),
         Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
         Cell::text(&config.algo),
+        Cell::text(options),
         Cell::number(config.seed as f64).with_text(config.seed.to_string()),
         Cell::number(run.frames()).with_text(frames(run.frames())),
         minutes,
@@ -122,6 +125,7 @@ fn mean_row(group: &Group, runs: usize) -> Vec<Cell> {
         Cell::text(scenario_name(&config.scenario)),
         Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
         Cell::text(&config.algo),
+        Cell::text(setting(group)),
         Cell::text(format!("mean of {runs}")),
     ];
     cells.extend(std::iter::repeat_n(Cell::text(""), 4));
