@@ -33,7 +33,8 @@ pub(crate) fn path(shared: &Shared, name: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// Kept episodes and runs, the best within their budgets first.
+/// Kept episodes and runs, the best within the budgets of their tasks first: a run that was trained
+/// to another budget is held to that of the task too, as a person is.
 pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, Response> {
     let table = aside(move || {
         let mut rows = kept(&shared.episodes);
@@ -42,19 +43,21 @@ pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, 
         rows.extend(catalogue.results().iter().filter_map(|run| {
             // What it is worth in closing episodes: training means are of many policies.
             let value = |place: &str| run.pointer(place).and_then(Value::as_f64);
-            let (episode_return, cost) = (value("/evaluation/return/mean")?, value("/evaluation/costs/0/cost/mean")?);
-            let preset = run["preset"].as_str().map_or_else(String::new, |preset| format!(" ({preset})"));
-            let within = ["surely", "mean"].contains(&run["evaluation"]["kept"].as_str()?);
+            let (episode_return, cost) = (value("/evaluation/return/mean")?, value("/own/cost")?);
+            let under = run["own"]["under"].as_str().filter(|words| !words.is_empty());
+            let under = under.map_or_else(String::new, |words| format!(" ({words})"));
             Some(json!({
-                "who": format!("{}{preset}, seed {}", run["algo"].as_str()?, run["seed"].as_str()?), "env": run["env"], "return": episode_return,
-                "cost": cost, "budget": value("/evaluation/costs/0/budget"), "within": within,
+                "who": format!("{}{under}, seed {}", run["algo"].as_str()?, run["seed"].as_str()?), "env": run["env"], "return": episode_return,
+                "cost": cost, "budget": run["own"]["budget"], "within": run["own"]["within"],
                 "agent": format!("run:{}", run["id"].as_str()?),
             }))
         }));
         rows.extend(shared.agents.zoo_results().into_iter().map(|one| {
+            let own = one.env.parse::<EnvId>().map(|id| id.scenario.safety_budget(RuleSet::Paper));
+            let budget = own.unwrap_or(one.budget);
             json!({
                 "who": format!("{} of the zoo", one.algorithm), "env": one.env, "return": one.episode_return, "cost": one.cost,
-                "budget": one.budget, "within": one.cost <= one.budget, "agent": format!("zoo:{}", one.name),
+                "budget": budget, "within": one.cost <= budget, "agent": format!("zoo:{}", one.name),
             })
         }));
         rows.sort_by(|a, b| {

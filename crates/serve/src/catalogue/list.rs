@@ -230,7 +230,12 @@ impl Catalogue {
 
     /// What each run ended with lately, for the table of the best.
     pub fn results(&self) -> Vec<Value> {
-        self.runs.iter().map(|(id, run)| run.as_json(id)).collect()
+        let row = |(id, run): (&String, &Run)| {
+            let mut row = run.as_json(id);
+            row["own"] = evaluated::by_the_task(run.evaluation.found.as_ref(), &run.config);
+            row
+        };
+        self.runs.iter().map(row).collect()
     }
 
     /// A run's columns as far as its file goes now.

@@ -28,7 +28,7 @@ export function play(main, query) {
     make('section', { class: 'stage' },
       make('div', { class: 'card' }, task, stage, numbers, meter, words, touch,
         make('div', { class: 'row' }, start, make('button', { onclick: () => { screen?.ask({ do: 'next' }); begin(); canvas.focus(); } }, 'Next seed'), make('button', { id: 'keys', onclick: () => help(card.dataset.what !== 'keys') }, 'Keys (H)'))),
-      make('div', { class: 'card side' }, make('h2', {}, 'Best within the budget'), make('p', { class: 'pale' }, 'People and agents in this environment whose cost is within the budget, by return. Agents by their closing evaluation.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Best within the budget' }, make('table', { id: 'best' }, make('thead', {}, make('tr', {}, ...[['who'], ['return', 'number'], ['cost', 'number'], ['watch']].map(([head, kind = '']) => make('th', { scope: 'col', class: kind }, head)))), table)))));
+      make('div', { class: 'card side' }, make('h2', {}, 'Best within the budget'), make('p', { class: 'pale' }, 'People and agents in this environment whose cost is within the budget, by return. Agents by their closing evaluation, held to the budget of the task whatever theirs was.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Best within the budget' }, make('table', { id: 'best' }, make('thead', {}, make('tr', {}, ...[['who'], ['return', 'number'], ['cost', 'number'], ['watch']].map(([head, kind = '']) => make('th', { scope: 'col', class: kind }, head)))), table)))));
 
   const press = (key, down) => screen?.ask({ do: down ? 'press' : 'release', key });
   function begin() {
