@@ -5,7 +5,7 @@ mod browser;
 mod common;
 
 use browser::Browser;
-use common::{folder, get, serve, write_seed};
+use common::{folder, get, serve, status, write_seed};
 use serde_json::{Value, json};
 use std::net::SocketAddr;
 
@@ -57,5 +57,55 @@ fn a_seed_that_was_run_twice_counts_once() {
     browser.script("document.querySelector('tbody input').click()");
     browser.wait("document.querySelector('#means td.number')?.innerText == '2 + 1 repeat'");
     browser.wait("document.querySelector('.readout').innerText.includes('(2 seeds)')");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn more_columns_than_a_page_takes_are_refused_in_words() {
+    let folder = folder("comparing-columns");
+    write_seed(&folder, "one", 1, 20);
+    let address = serve(&folder, None);
+    let id = all(address);
+    let many = |count: usize| {
+        let names = (1..count).map(|k| format!("eval/some_metric_{k}")).collect::<Vec<_>>();
+        format!("/api/curves?runs={id}&columns={},fps", names.join(","))
+    };
+    // The last of them is not left out.
+    assert!(ask(address, &many(256))[&id]["fps"].is_array());
+    let answer = get(address, &many(257), "");
+    assert_eq!(status(&answer), 400, "{answer}");
+    assert!(answer.contains("257 columns") && answer.contains("choose 256 at most"), "{answer}");
+}
+
+#[test]
+fn every_metric_of_a_run_is_drawn_and_none_makes_up_an_axis() {
+    let folder = folder("comparing-metrics");
+    write_seed(&folder, "one", 1, 3);
+    let names: Vec<String> = (0..40).map(|k| format!("stats/metric_{k}")).collect();
+    let row = |frames: u32| {
+        let all: String = names.iter().map(|name| format!(",\"{name}\":{frames}")).collect();
+        // One that was never a number.
+        format!("{{\"frames\":{frames},\"return_mean\":1,\"cost_mean\":null{all}}}\n")
+    };
+    let rows: String = [100, 200, 300].map(row).concat();
+    std::fs::write(folder.join("runs/one/metrics.jsonl"), rows).unwrap();
+    let address = serve(&folder, None);
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let all_metrics = names.join(",");
+    browser.go(&format!(
+        "http://{address}/#run?id={}&metrics=return_mean,cost_mean,{all_metrics}",
+        all(address)
+    ));
+    browser.wait("document.querySelectorAll('figure[data-chart]').length >= 41");
+    browser.wait("[...document.querySelectorAll('figure[data-chart^=stats]')].every((one) => one.querySelector('.readout').innerText.includes('300'))");
+    // Charts that hold nothing: the words of the axes and no numbers.
+    load(&browser, "chart");
+    browser.script("const { Chart, Shared } = window.chart; const one = new Chart(new Shared(), { title: 'Nothing', file: 'nothing' }); document.getElementById('page').append(one.element); one.draw()");
+    browser.wait(
+        "document.querySelector('[data-chart=nothing] .readout').innerText == 'not reported'",
+    );
+    let words = "[...document.querySelectorAll('[data-chart=nothing] svg text')].map((text) => text.textContent).join('|')";
+    let words = browser.script(&format!("return {words}"));
+    assert_eq!(words, json!("frames (1 frame = 1 game tic)|Nothing"));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -95,13 +95,14 @@ export class Chart {
     const positive = seen.filter((value) => value > 0);
     let [low, high] = log ? [Math.min(...positive) * 0.9, Math.max(...positive) * 1.1] : [Math.min(0, ...seen), Math.max(...seen, 1e-9)];
     if (!seen.length) [low, high] = [0, 1];
-    const rows = log ? logTicks(low, high) : ticks(low, high * 1.04);
-    if (!log) [low, high] = [Math.min(low, rows[0]), rows.at(-1)];
+    // Where nothing is drawn, numbers on an axis would be made up.
+    const rows = !seen.length ? [] : log ? logTicks(low, high) : ticks(low, high * 1.04);
+    if (!log && rows.length) [low, high] = [Math.min(low, rows[0]), rows.at(-1)];
     const x = scale(span, [LEFT, width - RIGHT]), y = scale([low, high], [height - BOTTOM, TOP], log);
     this.places = { x, y, drawn, whole };
     const parts = [];
     for (const value of rows) parts.push(path([[LEFT, y(value)], [width - RIGHT, y(value)]], { stroke: ink.line }), text(short(value), LEFT - 6, y(value) + 4, ink.pale, { 'text-anchor': 'end' }));
-    for (const tick of ticks(span[0] / whole.per, span[1] / whole.per)) {
+    for (const tick of drawn.length ? ticks(span[0] / whole.per, span[1] / whole.per) : []) {
       const place = x(tick * whole.per);
       if (place < LEFT - 1 || place > width - RIGHT + 1) continue;
       parts.push(path([[place, height - BOTTOM], [place, height - BOTTOM + 4]], { stroke: ink.pale }), text(short(tick), place, height - BOTTOM + 17, ink.pale, { 'text-anchor': place > width - RIGHT - 16 ? 'end' : 'middle' }));

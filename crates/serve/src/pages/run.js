@@ -91,7 +91,9 @@ export function run(main, query) {
   }
 
   async function load() {
-    const names = [...chosen].flatMap((name) => [name, ...evaluation_of(name).filter(Boolean)]);
+    // What this run has, each once: asking for more only comes nearer to what the server takes.
+    const there = new Set(detail.metrics.map((metric) => metric.name));
+    const names = [...new Set([...chosen].flatMap((name) => [name, ...evaluation_of(name)]))].filter((name) => there.has(name));
     const answer = await ask(`/api/curves?runs=${id}&columns=${names.map(encodeURIComponent).join(',')}`);
     if (gone || !answer) return;
     data = answer[id] ?? {};

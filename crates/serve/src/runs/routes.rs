@@ -14,8 +14,9 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Columns of a chart page at a time.
-const MAX_COLUMNS: usize = 32;
+/// Columns of a chart page at a time: a run has some forty metrics, most with an evaluation beside
+/// them.
+const MAX_COLUMNS: usize = 256;
 
 #[derive(Deserialize)]
 pub(crate) struct Since {
@@ -84,8 +85,14 @@ pub(crate) async fn curves(
     Asked(query): Asked<Chosen>,
 ) -> Result<Response, Response> {
     let ids = query.ids()?;
-    let names: Vec<String> =
-        query.columns.split(',').take(MAX_COLUMNS).map(str::to_owned).collect();
+    let names: Vec<String> = query.columns.split(',').map(str::to_owned).collect();
+    if names.len() > MAX_COLUMNS {
+        let why = format!(
+            "{} columns are more than a page of charts takes; choose {MAX_COLUMNS} at most",
+            names.len()
+        );
+        return Err(refusal(StatusCode::BAD_REQUEST, &why));
+    }
     let body = on_catalogue(shared, move |catalogue| {
         let curve = |id: &String| Some((id.clone(), catalogue.columns(id)?.thinned(&names)));
         ids.iter().filter_map(curve).collect::<serde_json::Map<String, Value>>()
