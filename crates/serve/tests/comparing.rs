@@ -109,3 +109,24 @@ fn every_metric_of_a_run_is_drawn_and_none_makes_up_an_axis() {
     assert_eq!(words, json!("frames (1 frame = 1 game tic)|Nothing"));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
+
+#[test]
+fn a_logarithmic_axis_always_has_numbers() {
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let address = serve(&folder("comparing-scale"), None);
+    browser.go(&format!("http://{address}/"));
+    load(&browser, "scale");
+    let ticks = |low: f64, high: f64| {
+        browser.script(&format!("return window.scale.logTicks({low}, {high})"))
+    };
+    assert_eq!(ticks(1.0, 1e4), json!([1, 10, 100, 1000, 10000]));
+    assert_eq!(ticks(1.0, 10.0), json!([1, 2, 5, 10]));
+    // Powers alone would be two.
+    assert_eq!(ticks(0.5, 12.0), json!([0.5, 1, 2, 5, 10]));
+    // None of 1, 2 and 5 lies between.
+    assert_eq!(ticks(21.0, 45.0), json!([25, 30, 35, 40, 45]));
+    for (low, high) in [(0.9, 1.1), (6.0, 9.0), (2.1e-4, 4.4e-4), (7.0, 7.0)] {
+        let found = ticks(low, high);
+        assert!(found.as_array().unwrap().len() >= 2 || low == high, "{low} {high}: {found}");
+    }
+}

@@ -18,11 +18,14 @@ export function ticks(low, high) {
   return Array.from({ length: Math.ceil(high / step - 1e-9) - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
 }
 
-// Powers of ten, and what lies between them where they are few.
+// Powers of ten, and what lies between them where they are few; round values where even those are: an axis with one number says
+// little.
 export function logTicks(low, high) {
   const [from, to] = [Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
-  const between = to - from <= 2 ? [1, 2, 5] : [1];
-  return Array.from({ length: to - from + 1 }, (_, k) => between.map((one) => one * 10 ** (from + k))).flat().filter((one) => one >= low * 0.999 && one <= high * 1.001);
+  const inside = (all) => all.filter((one) => one > 0 && one >= low * 0.999 && one <= high * 1.001);
+  const powers = (between) => inside(Array.from({ length: to - from + 1 }, (_, k) => between.map((one) => one * 10 ** (from + k))).flat());
+  const choices = [...(to - from <= 2 ? [] : [powers([1])]), powers([1, 2, 5]), inside(ticks(low, high))];
+  return choices.find((all) => all.length >= 3) ?? choices.at(-1);
 }
 
 // Where a value lies between two pixels, and back.
