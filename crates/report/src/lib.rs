@@ -35,4 +35,5 @@ pub mod site;
 pub mod statistics;
 mod write;
 
+pub use page::{SCRIPT, base64};
 pub use write::{Written, write_report, write_report_and_latex};

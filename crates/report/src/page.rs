@@ -8,7 +8,9 @@ use crate::run::Kept;
 use std::fmt::Write;
 
 const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
+/// The script of every page, as it stands between its tags: who serves a page can allow this one
+/// and no other.
+pub const SCRIPT: &str = include_str!("page.js");
 
 /// Long lists of everything, which open on a click (or by a link to them).
 const FOLDED: [&str; 3] = ["experiments", "runs", "players"];
@@ -182,8 +184,9 @@ fn write_cell(cell: &Cell, html: &mut String) {
     html.push_str("</td>");
 }
 
-/// Bytes as text for a `data:` address (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
+/// Bytes as text, for a `data:` address or the hash of a script (RFC 4648).
+#[must_use]
+pub fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for three in bytes.chunks(3) {

@@ -130,3 +130,25 @@ fn a_logarithmic_axis_always_has_numbers() {
         assert!(found.as_array().unwrap().len() >= 2 || low == high, "{low} {high}: {found}");
     }
 }
+
+/// The page's own script runs, and none that a name might bring.
+#[test]
+fn a_reports_tables_sort_where_it_is_served() {
+    let folder = folder("comparing-report");
+    for seed in 1..=3 {
+        write_seed(&folder, &format!("seed{seed}"), seed, 10 * seed);
+    }
+    let address = serve(&folder, None);
+    let path = format!("/api/report?runs={}", all(address));
+    let answer = get(address, &path, "");
+    let policy = answer.lines().find(|line| line.starts_with("content-security-policy")).unwrap();
+    assert!(policy.contains("script-src 'sha256-") && policy.contains("default-src 'none'"));
+    assert!(!policy.contains("script-src 'unsafe"), "{policy}");
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    browser.go(&format!("http://{address}{path}"));
+    browser.wait("document.querySelector('#runs .heads th')");
+    browser.script("document.querySelector('#runs details').open = true; document.querySelector('#runs .heads th').click()");
+    browser.wait("document.querySelector('#runs .heads th').ariaSort == 'ascending'");
+    let refused = browser.errors();
+    assert!(!refused.iter().any(|line| line.contains("Content Security Policy")), "{refused:?}");
+}

@@ -8,11 +8,12 @@ use crate::shared::Shared;
 use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use hasard_learn::runs::claim::sha256;
 use hasard_media::files::Scratch;
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// Columns of a chart page at a time: a run has some forty metrics, most with an evaluation beside
 /// them.
@@ -120,12 +121,24 @@ pub(crate) async fn report(
         written.and_then(|written| std::fs::read(written.page).map_err(|error| error.to_string()))
     });
     let page = page.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
-    // The report is one page with its pictures and style within; no script of it runs here.
-    let policy =
-        "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'none'";
     let headers = [
         (header::CONTENT_TYPE, "text/html; charset=utf-8"),
-        (header::CONTENT_SECURITY_POLICY, policy),
+        (header::CONTENT_SECURITY_POLICY, report_policy()),
     ];
     Ok((headers, page).into_response())
+}
+
+/// The report is one page with its pictures, style and script within: its own script sorts tables
+/// and reads curves, and by its hash no other runs.
+fn report_policy() -> &'static str {
+    static POLICY: LazyLock<String> = LazyLock::new(|| {
+        let hex = sha256(hasard_report::SCRIPT.as_bytes());
+        let pairs = hex.as_bytes().chunks(2).filter_map(|pair| str::from_utf8(pair).ok());
+        let bytes: Vec<u8> = pairs.filter_map(|pair| u8::from_str_radix(pair, 16).ok()).collect();
+        format!(
+            "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'none'; script-src 'sha256-{}'",
+            hasard_report::base64(&bytes)
+        )
+    });
+    &POLICY
 }
