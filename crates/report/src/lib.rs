@@ -9,6 +9,7 @@
 //! | [`document`], `sections` | what the report says |
 //! | [`chart`], [`heat`] | figures and heatmaps |
 //! | [`scoreboard`] | agents whose claims hold, as a page |
+//! | [`report_page`] | the page alone, as text |
 //! | [`write_report`] | HTML, Markdown, CSV, SVG, PNG and GIF files; LaTeX and PDF where wanted |
 //!
 //! Nothing here trains, plays or knows an environment, so that a report can be made of runs of any
@@ -36,4 +37,4 @@ pub mod statistics;
 mod write;
 
 pub use page::{SCRIPT, base64};
-pub use write::{Written, write_report, write_report_and_latex};
+pub use write::{Written, report_page, write_report, write_report_and_latex};

@@ -1,11 +1,11 @@
 //! The whole way from run directories to a folder of files.
 
 use crate::chart::{pdf, rasterise, standalone_svg};
-use crate::document::Block;
+use crate::document::{Block, Document};
 use crate::group::Group;
 use crate::latex::{DOCUMENT, latex};
 use crate::markdown::{FIGURES, markdown};
-use crate::run::{Warning, discover};
+use crate::run::{Found, Warning, discover};
 use crate::sections::Baselines;
 use crate::{csv, page, sections};
 use hasard_media::files::write_whole;
@@ -50,11 +50,35 @@ pub fn write_report_and_latex(
     write(paths, out, title, true)
 }
 
+/// The page of [`write_report`] alone, as text. Most of a report's time goes into the pictures
+/// beside it, which the page draws itself.
+///
+/// # Errors
+/// One line that names the path and the remedy: nothing found.
+pub fn report_page(paths: &[PathBuf], title: &str) -> Result<String, String> {
+    Ok(page::page(&Read::of(paths, title)?.document))
+}
+
+/// The runs below some paths, and what the report says of them.
+struct Read {
+    found: Found,
+    warnings: Vec<Warning>,
+    groups: Vec<Group>,
+    document: Document,
+}
+
+impl Read {
+    fn of(paths: &[PathBuf], title: &str) -> Result<Read, String> {
+        let mut found = discover(paths)?;
+        let mut warnings = std::mem::take(&mut found.warnings);
+        let groups = Group::sort(&found, &mut warnings);
+        let document = sections::document(title, &found, &groups, &mut warnings);
+        Ok(Read { found, warnings, groups, document })
+    }
+}
+
 fn write(paths: &[PathBuf], out: &Path, title: &str, for_papers: bool) -> Result<Written, String> {
-    let mut found = discover(paths)?;
-    let mut warnings = std::mem::take(&mut found.warnings);
-    let groups = Group::sort(&found, &mut warnings);
-    let document = sections::document(title, &found, &groups, &mut warnings);
+    let Read { found, warnings, groups, document } = Read::of(paths, title)?;
     let mut files = Vec::new();
     let mut write = |name: &str, bytes: &[u8]| {
         let path = out.join(name);

@@ -5,7 +5,7 @@
 mod synthetic;
 
 use hasard_media::episode::Outcome;
-use hasard_report::write_report;
+use hasard_report::{report_page, write_report};
 use std::path::{Path, PathBuf};
 use synthetic::{Folder, Synthetic, write_episode, write_heatmaps};
 
@@ -134,6 +134,8 @@ fn a_report_on_many_experiments() {
     );
 
     let page = std::fs::read_to_string(&written.page).unwrap();
+    // Who wants the page alone gets the same one.
+    assert!(report_page(std::slice::from_ref(&runs), "Synthetic runs").unwrap() == page);
     // Self-contained: nothing is fetched from anywhere.
     for forbidden in ["src=\"http", "href=\"http", "url(", "@import", "<link", "src=\"/", "fetch("]
     {

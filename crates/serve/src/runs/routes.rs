@@ -9,7 +9,6 @@ use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use hasard_learn::runs::claim::sha256;
-use hasard_media::files::Scratch;
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::Path;
@@ -101,7 +100,7 @@ pub(crate) async fn curves(
     Ok(json_of(&Value::Object(body.await?)))
 }
 
-/// The report of some runs, as `hasard report` writes it.
+/// The page of a report of some runs, as `hasard report` writes it.
 pub(crate) async fn report(
     State(shared): State<Arc<Shared>>,
     Asked(query): Asked<Chosen>,
@@ -111,15 +110,7 @@ pub(crate) async fn report(
         ids.iter().filter_map(|id| catalogue.path(id)).collect::<Vec<_>>()
     })
     .await?;
-    let page = long_job(&shared.long_jobs, move || {
-        static NUMBER: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
-        let number = NUMBER.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        let folder = std::env::temp_dir()
-            .join(format!("hasard-serve-report-{}-{number}", std::process::id()));
-        let folder = Scratch::new(folder);
-        let written = hasard_report::write_report(&paths, folder.path(), "Runs");
-        written.and_then(|written| std::fs::read(written.page).map_err(|error| error.to_string()))
-    });
+    let page = long_job(&shared.long_jobs, move || hasard_report::report_page(&paths, "Runs"));
     let page = page.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
     let headers = [
         (header::CONTENT_TYPE, "text/html; charset=utf-8"),
