@@ -152,3 +152,33 @@ fn a_reports_tables_sort_where_it_is_served() {
     let refused = browser.errors();
     assert!(!refused.iter().any(|line| line.contains("Content Security Policy")), "{refused:?}");
 }
+
+/// A reader who has scrolled the table and stands on a control stays there while a run goes on.
+#[test]
+fn a_comparison_that_is_renewed_keeps_scroll_and_focus() {
+    let Some(browser) = Browser::open(390, 900, false) else { return };
+    let folder = folder("comparing-live");
+    write_seed(&folder, "one", 1, 20);
+    let address = serve(&folder, None);
+    browser.go(&format!("http://{address}/#runs?chosen={}", all(address)));
+    browser.wait("document.querySelector('#means td') && document.querySelector('.legend button')");
+    let table = "document.getElementById('means').parentElement";
+    // The table is made too narrow for its words, whatever they are.
+    let narrow = "document.head.append(Object.assign(document.createElement('style'), { textContent: '#means { display: table; width: 3000px }' }))";
+    browser.script(narrow);
+    browser.script(&format!("window.old = {table}; {table}.scrollLeft = 77; document.querySelector('.legend button').focus()"));
+    assert_eq!(browser.script(&format!("return {table}.scrollLeft")), json!(77));
+    write_seed(&folder, "one", 1, 40);
+    browser.wait(&format!("{table} != window.old && {table}.innerText.includes('40')"));
+    assert_eq!(browser.script(&format!("return {table}.scrollLeft")), json!(77));
+    let focused = "return document.activeElement.closest('.legend') != null";
+    assert_eq!(browser.script(focused), json!(true));
+    // The same of a button beneath a picture.
+    browser.script("document.querySelector('[aria-label^=\"Save return against cost\"]').focus(); window.label = document.activeElement.ariaLabel");
+    browser.script("window.old = document.getElementById('means')");
+    write_seed(&folder, "one", 1, 60);
+    browser.wait("document.getElementById('means') != window.old");
+    let label = browser.script("return document.activeElement.ariaLabel == window.label");
+    assert_eq!(label, json!(true));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

@@ -1,5 +1,5 @@
 // Experiments side by side: a facet for each environment, one legend that switches curves, means over seeds, return against cost.
-import { ask, make, number } from '/dom.js';
+import { ask, make, number, renew } from '/dom.js';
 import { Chart, Shared } from '/chart.js';
 import { by_seed, column, folded } from '/curves.js';
 import { picker, title_of, USUAL } from '/metrics.js';
@@ -112,9 +112,9 @@ export class Comparison {
 
   show_legend() {
     const entries = new Map(this.experiments.map((one) => [one.label.text, one]));
-    const entry = ([text, one]) => make('button', { class: 'small', 'aria-pressed': String(!this.hidden.has(text)), title: one.label.full, 'data-legend': text, onclick: () => { if (!this.hidden.delete(text)) this.hidden.add(text); this.draw(); this.legend.querySelector(`[data-legend="${CSS.escape(text)}"]`)?.focus(); } },
+    const entry = ([text, one]) => make('button', { class: 'small', 'aria-pressed': String(!this.hidden.has(text)), title: one.label.full, 'data-legend': text, onclick: () => { if (!this.hidden.delete(text)) this.hidden.add(text); this.draw(); } },
       make('b', { 'aria-hidden': 'true', style: `color:${colour(one.place)}` }, '━ '), text);
-    this.legend.replaceChildren(...[...entries].map(entry));
+    renew(this.legend, ...[...entries].map(entry));
   }
 
   show_means(facets) {
@@ -126,9 +126,9 @@ export class Comparison {
         make('td', { class: `number ${within ? 'good' : 'bad'}` }, `${said(row.cost)} of ${number(row.budget)} ${within ? 'within' : 'over'}`), make('td', { class: 'pale' }, source === 'evaluation' ? 'closing evaluations' : 'latest training episodes'));
     }));
     const heads = make('tr', {}, ...['environment', 'experiment', 'seeds', 'return', 'cost of budget', 'from'].map((head, k) => make('th', { scope: 'col', class: k > 1 && k < 5 ? 'number' : '' }, head)));
-    this.table.replaceChildren(make('p', { class: 'note' }, 'In brackets: 95 % of 2,000 bootstrap samples over seeds; a single seed has none.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Inter-quartile means' }, make('table', { id: 'means', class: facets.length > 1 ? '' : 'single' }, make('thead', {}, heads), make('tbody', {}, ...rows))));
+    renew(this.table, make('p', { class: 'note' }, 'In brackets: 95 % of 2,000 bootstrap samples over seeds; a single seed has none.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Inter-quartile means' }, make('table', { id: 'means', class: facets.length > 1 ? '' : 'single' }, make('thead', {}, heads), make('tbody', {}, ...rows))));
     const plots = facets.map((facet) => scatter(env_name(facet.env), facet.rows.filter((row) => row.return && row.cost).map((row) => ({ ...row, name: of(row.experiment)?.label.text ?? row.algo, colour: colour(of(row.experiment)?.place ?? 0) })), facet.rows[0]?.budget));
-    this.pareto.replaceChildren(make('h2', {}, 'Return against cost'), make('p', { class: 'note' }, 'Large: inter-quartile means with their intervals; small: seeds. Right of the dashed line is above the budget.'), make('div', { class: 'charts' }, ...plots));
+    renew(this.pareto, make('h2', {}, 'Return against cost'), make('p', { class: 'note' }, 'Large: inter-quartile means with their intervals; small: seeds. Right of the dashed line is above the budget.'), make('div', { class: 'charts' }, ...plots));
     plots.forEach((plot) => plot.dispatchEvent(new Event('shown')));
   }
 }

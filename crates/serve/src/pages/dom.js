@@ -10,6 +10,18 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+// Puts other children into a place. What was scrolled there stays where it was, and what had the focus passes it to what now has its
+// name: a page that follows a run is not torn from under the reader with each new row.
+export function renew(place, ...children) {
+  const name = (one) => `${one.tagName} ${one.getAttribute('aria-label') ?? one.textContent}`;
+  const scrolled = () => [...place.querySelectorAll('.scroll')];
+  const before = new Map(scrolled().map((one) => [name(one), [one.scrollLeft, one.scrollTop]]));
+  const focused = place.contains(document.activeElement) ? name(document.activeElement) : null;
+  place.replaceChildren(...children);
+  for (const one of scrolled()) [one.scrollLeft, one.scrollTop] = before.get(name(one)) ?? [0, 0];
+  if (focused !== null) [...place.querySelectorAll('a,button,input,select,summary,[tabindex]')].find((one) => name(one) === focused)?.focus({ preventScroll: true });
+}
+
 // A text in which what stands between two backticks is code.
 export function coded(text) {
   return text.split('`').map((part, k) => (k % 2 ? make('code', {}, part) : part));
