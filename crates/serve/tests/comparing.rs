@@ -182,3 +182,26 @@ fn a_comparison_that_is_renewed_keeps_scroll_and_focus() {
     assert_eq!(label, json!(true));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
+
+#[test]
+fn charts_follow_the_system_into_the_dark() {
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let folder = folder("comparing-dark");
+    write_seed(&folder, "one", 1, 20);
+    let address = serve(&folder, None);
+    browser.go(&format!("http://{address}/#runs?chosen={}", all(address)));
+    // Curves, and return against cost.
+    browser.wait("document.querySelectorAll('svg.chart text').length > 20 && document.querySelector('svg[aria-label*=against] text')");
+    let fills = "[...new Set([...document.querySelectorAll('svg.chart text')].map((text) => text.getAttribute('fill')))].sort().join()";
+    let light = browser.script(&format!("return {fills}"));
+    browser.colours(true);
+    browser.wait(&format!("{fills} != {light}"));
+    let dark = browser.script(&format!("return {fills}"));
+    let (light, dark) = (light.as_str().unwrap(), dark.as_str().unwrap());
+    assert!(
+        light.split(',').all(|one| !dark.split(',').any(|other| one == other)),
+        "{light} {dark}"
+    );
+    browser.colours(false);
+    browser.wait(&format!("{fills} == '{light}'"));
+}

@@ -3,7 +3,7 @@
 import { coded, make } from '/dom.js';
 import { at, smoothed } from '/curves.js';
 import { axis, logTicks, scale, short, ticks } from '/scale.js';
-import { downloads, inks, path, shape, standalone, text } from '/svg.js';
+import { downloads, inks, path, redrawn, shape, standalone, text } from '/svg.js';
 
 const LEFT = 62, RIGHT = 12, TOP = 10, BOTTOM = 44;
 
@@ -25,11 +25,10 @@ export class Chart {
     const saves = downloads(title, file, () => standalone(this.svg, title, this.legend()), () => this.rows());
     this.element = make('figure', { 'data-chart': file }, make('figcaption', {}, make('span', { class: 'row' }, make('b', {}, title), saves), make('span', { class: 'note' }, ...coded(note))), this.svg, this.readout);
     this.listen();
-    this.sized = new ResizeObserver(() => this.draw());
-    this.sized.observe(this.svg);
+    this.stop = redrawn(this.svg, this.svg, () => this.draw());
   }
 
-  end() { this.sized.disconnect(); this.element.remove(); }
+  end() { this.stop(); this.element.remove(); }
 
   listen() {
     const { svg, shared } = this;

@@ -1,7 +1,7 @@
 // An agent's episodes at a glance: a dot each, its cost across, its return up. A click shows the episode.
 import { ask, make, number } from '/dom.js';
 import { scale, short, ticks } from '/scale.js';
-import { inks, path, shape, text } from '/svg.js';
+import { inks, path, redrawn, shape, text } from '/svg.js';
 
 const LEFT = 46, RIGHT = 12, TOP = 10, BOTTOM = 34, HEIGHT = 150;
 // Episodes that are acted out where a run's closing evaluation is not at hand.
@@ -23,7 +23,7 @@ export class Episodes {
     this.buttons = make('span', { class: 'row' }, to('Best', 'Most return within the budget', 'best'), to('Worst', 'Least return', 'worst'), to('Most costly', 'Most cost', 'costly'));
     this.act = make('button', { id: 'act', onclick: () => this.play() }, `Play ${ACTED} episodes`);
     this.element = make('div', { id: 'episodes' }, make('h2', {}, 'Episodes'), this.words, this.svg, make('div', { class: 'row' }, this.buttons, this.act));
-    new ResizeObserver(() => this.draw()).observe(this.element);
+    redrawn(this.svg, this.element, () => this.draw());
   }
 
   // Of the agent of a link.

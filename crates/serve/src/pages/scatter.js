@@ -1,7 +1,7 @@
 // Return against cost: experiments as points with intervals both ways, their seeds as small ones, the budget dashed.
 import { make } from '/dom.js';
 import { scale, short, ticks } from '/scale.js';
-import { downloads, inks, path, shape, standalone, text } from '/svg.js';
+import { downloads, inks, path, redrawn, shape, standalone, text } from '/svg.js';
 
 const LEFT = 62, RIGHT = 16, TOP = 14, BOTTOM = 44, HEIGHT = 280;
 // Height of a line of words, and the mean width of a letter in it.
@@ -57,7 +57,6 @@ export function scatter(title, rows, budget) {
     }
     svg.replaceChildren(...parts);
   };
-  const sized = new ResizeObserver(draw);
-  sized.observe(svg);
+  redrawn(svg, svg, draw);
   return figure;
 }

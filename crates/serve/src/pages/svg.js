@@ -33,6 +33,20 @@ export function inks(element) {
   return { ink: of('--ink'), pale: of('--pale'), line: of('--line'), bad: of('--bad'), good: of('--good'), card: of('--card') };
 }
 
+// Draws a picture whenever its place has another size, and when the system goes from light to dark or back: it is drawn in the
+// colours of then. Gives a function that ends this.
+export function redrawn(svg, place, draw) {
+  svg.addEventListener('colours', draw);
+  const sized = new ResizeObserver(draw);
+  sized.observe(place);
+  return () => { sized.disconnect(); svg.removeEventListener('colours', draw); };
+}
+
+// One listener for all that are shown: a picture that is replaced needs not be forgotten here.
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  for (const svg of document.querySelectorAll('svg.chart')) svg.dispatchEvent(new Event('colours'));
+});
+
 // A picture as a file of its own: on the page's ground, with its title above and what its colours mean below.
 export function standalone(svg, title, legend = []) {
   const { card, ink, pale } = inks(svg);

@@ -67,9 +67,16 @@ impl Browser {
         let metrics =
             json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         browser.chrome("Emulation.setDeviceMetricsOverride", &metrics);
-        let scheme = json!([{ "name": "prefers-color-scheme", "value": if dark { "dark" } else { "light" } }]);
-        browser.chrome("Emulation.setEmulatedMedia", &json!({ "features": scheme }));
+        browser.colours(dark);
         Some(browser)
+    }
+
+    /// Has the system turn dark or light.
+    #[allow(dead_code, reason = "each test file uses some of it")]
+    pub fn colours(&self, dark: bool) {
+        let value = if dark { "dark" } else { "light" };
+        let scheme = json!([{ "name": "prefers-color-scheme", "value": value }]);
+        self.chrome("Emulation.setEmulatedMedia", &json!({ "features": scheme }));
     }
 
     fn ask(&self, method: &str, path: &str, body: &Value) -> Value {
