@@ -22,6 +22,11 @@ for (const head of document.querySelectorAll(".heads th")) {
   head.addEventListener("click", sort);
   head.addEventListener("keydown", (event) => { if (event.key === "Enter") sort(); });
 }
+// Links lead to headings below the row of links, which stays in sight and has as many lines as the window makes of it.
+const nav = document.querySelector("nav");
+const measure = () => document.documentElement.style.setProperty("--nav", `${nav.offsetHeight}px`);
+new ResizeObserver(measure).observe(nav);
+measure();
 // A link to a folded section opens it.
 const unfold = () => {
   const section = location.hash.length > 1 && document.getElementById(location.hash.slice(1));

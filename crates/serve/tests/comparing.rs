@@ -149,6 +149,11 @@ fn a_reports_tables_sort_where_it_is_served() {
     browser.wait("document.querySelector('#runs .heads th')");
     browser.script("document.querySelector('#runs details').open = true; document.querySelector('#runs .heads th').click()");
     browser.wait("document.querySelector('#runs .heads th').ariaSort == 'ascending'");
+    // A click in the row of links, which has several lines here, leads to a heading that shows.
+    browser.script("document.querySelector('nav').style.paddingRight = '700px'; [...document.querySelectorAll('nav a')].forEach((link) => { link.style.width = '300px'; })");
+    browser.wait("document.documentElement.style.getPropertyValue('--nav') == `${document.querySelector('nav').offsetHeight}px`");
+    browser.script("document.querySelector('nav a[href=\"#safety\"]').click()");
+    browser.wait("(() => { const below = document.querySelector('#safety h2').getBoundingClientRect().top - document.querySelector('nav').getBoundingClientRect().bottom; return scrollY > 0 && below >= 0 && below < 60; })()");
     let refused = browser.errors();
     assert!(!refused.iter().any(|line| line.contains("Content Security Policy")), "{refused:?}");
 }
