@@ -29,6 +29,23 @@ pub struct BarGroup {
     pub budget: Option<f64>,
 }
 
+/// Rows of names below a panel at most.
+const MAX_ROWS: usize = 4;
+/// Size of the names' letters, and the least room between two names of a row.
+const LETTERS: f64 = 11.0;
+const GAP: f64 = 5.0;
+
+/// In how many rows names stand whole, by turns: the fewest in which none runs into the next of its
+/// row; `None` where even the most rows are too few. Names are their middles and widths.
+fn rows_of(names: &[(f64, f64)]) -> Option<usize> {
+    let apart =
+        |one: &(f64, f64), next: &(f64, f64)| next.0 - next.1 / 2.0 - (one.0 + one.1 / 2.0) >= GAP;
+    let fits = |rows: &usize| {
+        names.iter().zip(names.iter().skip(*rows)).all(|(one, next)| apart(one, next))
+    };
+    (1..=MAX_ROWS).find(fits)
+}
+
 /// Draws groups of bars.
 #[must_use]
 pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing {
@@ -37,10 +54,19 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
     let (left, top, right) = (46.0, 26.0, width - 4.0);
     let slots: f64 = groups.iter().map(|group| group.bars.len() as f64 + 0.8).sum();
     let slot = ((right - left) / slots.max(1.0)).min(46.0);
-    // Names that do not fit side by side stand in two rows by turns.
     let room = |group: &BarGroup| (group.bars.len() as f64 + 0.8) * slot;
-    let crowded = groups.iter().any(|group| text_width(&group.name, 11.0) > room(group));
-    let rows = if crowded { 2 } else { 1 };
+    // A name stands below the middle of its bars, but within the picture.
+    let within = |middle: f64, wide: f64| middle.min(width - 1.0 - wide / 2.0).max(wide / 2.0);
+    let mut from = left;
+    let place = |group: &BarGroup| {
+        let middle = from + room(group) / 2.0;
+        from += room(group);
+        let wide = text_width(&group.name, LETTERS);
+        (within(middle, wide), wide)
+    };
+    let names: Vec<(f64, f64)> = groups.iter().map(place).collect();
+    let whole = rows_of(&names);
+    let rows = whole.unwrap_or(MAX_ROWS);
     let bottom = height - 9.0 - 13.0 * rows as f64;
     let title = Shape::Text {
         at: (left, 14.0),
@@ -109,11 +135,13 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
         }
         // A name that does not fit even so is cut; the pointer box has it whole.
         let mut name = group.name.clone();
-        while text_width(&name, 11.0) > rows as f64 * room(group) && name.chars().count() > 2 {
+        let longest = if whole.is_some() { width - 2.0 } else { rows as f64 * room(group) - GAP };
+        while text_width(&name, LETTERS) > longest && name.chars().count() > 2 {
             name.pop();
         }
         let y = bottom + 15.0 + 13.0 * (index % rows) as f64;
-        drawing.text(((from + x) / 2.0, y), Anchor::Middle, Ink::Muted, name);
+        let middle = within((from + x) / 2.0, text_width(&name, LETTERS));
+        drawing.text((middle, y), Anchor::Middle, Ink::Muted, name);
         x += 0.8 * slot;
     }
     if groups.iter().all(|group| group.bars.is_empty()) {

@@ -134,3 +134,37 @@ fn names_of_many_narrow_groups_stand_whole_in_two_rows() {
     let few = drawn(&groups[..2]);
     assert_eq!(few[0].1, few[1].1);
 }
+
+/// As the report draws thirteen algorithms beside the paper's: each is named whole, and none runs
+/// into another or out of the picture.
+#[test]
+fn names_of_all_algorithms_stand_whole_and_apart() {
+    let bar = || Bar {
+        name: "here".into(),
+        value: 1.0,
+        interval: None,
+        ink: Ink::Series(0),
+        pale: false,
+    };
+    let names = crate::group::ALGORITHMS;
+    let groups =
+        names.map(|name| BarGroup { name: name.into(), bars: vec![bar(), bar()], budget: None });
+    let shapes = bar_panel("return", &groups, (306.0, 180.0)).shapes;
+    let texts = shapes.into_iter().filter_map(|shape| match shape {
+        Shape::Text { text, at, .. } if names.contains(&text.as_str()) => Some((text, at)),
+        _ => None,
+    });
+    let texts: Vec<(String, (f64, f64))> = texts.collect();
+    assert_eq!(texts.len(), names.len());
+    let ends = |(text, (x, _)): &(String, (f64, f64))| {
+        let half = text_width(text, 11.0) / 2.0;
+        (x - half, x + half)
+    };
+    for (at, one) in texts.iter().enumerate() {
+        let (left, right) = ends(one);
+        assert!(left >= 0.0 && right <= 306.0 && one.1.1 <= 180.0, "{one:?}");
+        for other in texts[at + 1..].iter().filter(|other| other.1.1 == one.1.1) {
+            assert!(ends(other).0 > right || ends(other).1 < left, "{one:?} {other:?}");
+        }
+    }
+}
