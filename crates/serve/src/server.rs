@@ -96,6 +96,7 @@ impl Server {
             .route("/api/edit", post(runs::edit).layer(DefaultBodyLimit::max(16 << 10)))
             .route("/api/settings", get(runs::settings))
             .route("/api/curves", get(runs::curves))
+            .route("/api/metrics", get(runs::reported))
             .route("/api/compare", get(runs::compare))
             .route("/api/heatmap", get(runs::heatmap))
             .route("/api/automap", get(runs::automap))

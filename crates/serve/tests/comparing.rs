@@ -210,3 +210,40 @@ fn charts_follow_the_system_into_the_dark() {
     browser.colours(false);
     browser.wait(&format!("{fills} == '{light}'"));
 }
+
+#[test]
+fn metrics_of_every_chosen_run_can_be_picked() {
+    let folder = folder("comparing-picked");
+    write_seed(&folder, "plain", 1, 20);
+    write_seed(&folder, "other", 2, 20);
+    let path = folder.join("runs/other/metrics.jsonl");
+    let row = "{\"frames\":2100,\"stats/only_here\":7}\n";
+    let rows = std::fs::read_to_string(&path).unwrap() + row;
+    std::fs::write(&path, rows).unwrap();
+    let address = serve(&folder, None);
+    let metrics = ask(address, &format!("/api/metrics?runs={}", all(address)));
+    let names: Vec<&str> =
+        metrics.as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
+    assert!(names.contains(&"stats/only_here") && names.contains(&"fps"), "{names:?}");
+    assert_eq!(names.iter().filter(|name| **name == "fps").count(), 1);
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let list = ask(address, "/api/runs");
+    let id = |name: &str| {
+        let runs = list["runs"].as_array().unwrap();
+        runs.iter().find(|run| run["name"] == name).unwrap()["id"].as_str().unwrap().to_owned()
+    };
+    browser.go(&format!("http://{address}/#runs?chosen={}", id("plain")));
+    browser.wait("document.querySelector('[data-metric=fps]')");
+    assert_eq!(
+        browser.script("return document.querySelector('[data-metric=\"stats/only_here\"]')"),
+        json!(null)
+    );
+    // The second is ticked beside the first.
+    browser.script("document.querySelector('button.open').click()");
+    browser.wait("document.querySelectorAll('tr.seed input').length == 2");
+    browser.script(
+        "[...document.querySelectorAll('tr.seed input')].find((box) => !box.checked).click()",
+    );
+    browser.wait("document.querySelector('[data-metric=\"stats/only_here\"]')");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

@@ -58,11 +58,13 @@ export class Comparison {
 
   async load(turn = this.asked) {
     const ids = this.runs.map((run) => run.id).join(',');
-    const [data, means, detail] = await Promise.all([ask(`/api/curves?runs=${ids}&columns=${[...this.chosen].map(encodeURIComponent).join(',')}`), ask(`/api/compare?runs=${ids}`), this.metrics.length ? null : ask(`/api/run?id=${this.runs[0].id}`)]);
+    const [data, means, metrics] = await Promise.all([ask(`/api/curves?runs=${ids}&columns=${[...this.chosen].map(encodeURIComponent).join(',')}`), ask(`/api/compare?runs=${ids}`), ask(`/api/metrics?runs=${ids}`)]);
     // Answers may overtake each other: only the one to what is chosen now counts.
-    if (!data || !means || turn !== this.asked) return;
+    if (!data || !means || !metrics || turn !== this.asked) return;
     this.data = data;
-    if (detail) { this.metrics = detail.metrics; this.show_picker(); }
+    // Those of all that are chosen: one may report what the others do not, and a run that goes on may begin to.
+    const names = (all) => String(all.map((metric) => metric.name));
+    if (names(metrics) !== names(this.metrics) || !this.picked.firstChild) { this.metrics = metrics; this.show_picker(); }
     this.draw();
     this.show_means(means);
   }

@@ -13,6 +13,7 @@ use hasard_learn::config::settings::setting_pointer;
 use hasard_learn::config::{EnvConfig, TrainConfig};
 use hasard_report::run::{Config, read_episode_lines};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -58,6 +59,21 @@ pub(crate) async fn detail(
         })
     });
     Ok(json_of(&body.await?))
+}
+
+/// The metrics that any of some runs reports, with their meanings.
+pub(crate) async fn reported(
+    State(shared): State<Arc<Shared>>,
+    Asked(query): Asked<Chosen>,
+) -> Result<Response, Response> {
+    let ids = query.ids()?;
+    let names = on_catalogue(shared, move |catalogue| {
+        let of = |id: &String| catalogue.columns(id).map(|columns| columns.names());
+        ids.iter().filter_map(of).flatten().collect::<BTreeSet<String>>()
+    });
+    let mut names: Vec<String> = names.await?.into_iter().collect();
+    names.sort_by_cached_key(|name| place(name));
+    Ok(json_of(&names.iter().map(|name| listed(name)).collect()))
 }
 
 fn text_of(run: &Path) -> Value {

@@ -9,6 +9,6 @@ mod routes;
 
 pub(crate) use asked::directory;
 pub(crate) use compared::compare;
-pub(crate) use detail::{detail, settings};
+pub(crate) use detail::{detail, reported, settings};
 pub(crate) use notes::edit;
 pub(crate) use routes::{automap, curves, heatmap, list, report};
