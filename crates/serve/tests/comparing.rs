@@ -247,3 +247,24 @@ fn metrics_of_every_chosen_run_can_be_picked() {
     browser.wait("document.querySelector('[data-metric=\"stats/only_here\"]')");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
+
+/// A row shows the mean over seeds, and is sorted by what it shows.
+#[test]
+fn frames_are_sorted_by_what_the_rows_show() {
+    let folder = folder("comparing-frames");
+    for seed in 1..=3 {
+        write_seed(&folder, &format!("three/seed{seed}"), seed, 20);
+    }
+    write_seed(&folder, "long", 9, 40);
+    let config = folder.join("runs/long/config.json");
+    let text = std::fs::read_to_string(&config).unwrap().replace("PPOLag", "PPO");
+    std::fs::write(&config, text).unwrap();
+    let address = serve(&folder, None);
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    browser.go(&format!("http://{address}/#runs?sort=-frames"));
+    browser.wait("document.querySelectorAll('tbody input').length == 2");
+    let first = browser.script("return document.querySelector('tbody tr').innerText");
+    // 4,000 frames of one seed before 2,000 of each of three.
+    assert!(first.as_str().unwrap().contains("seed 9"), "{first}");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

@@ -7,7 +7,7 @@ import { duration, interval, verdict } from '/strip.js';
 const minus = -Infinity;
 // Heads of the columns, whether they are numbers, and what rows are sorted by; a name with a minus before it is the other way round.
 const HEADS = [['experiment', false, (row) => `${row.algo} ${row.rest}`], ['environment', false, (row) => row.env], ['seeds', true, (row) => row.seeds], ['evaluation return', true, (row) => row.evaluated?.return?.mean ?? minus], ['evaluation cost', true, (row) => row.evaluated?.costs[0]?.cost?.mean ?? minus],
-  ['training return', true, (row) => row.training.return?.mean ?? minus], ['training cost', true, (row) => row.training.cost?.mean ?? minus], ['frames', true, (row) => row.frames], ['state', false, (row) => row.state]];
+  ['training return', true, (row) => row.training.return?.mean ?? minus], ['training cost', true, (row) => row.training.cost?.mean ?? minus], ['frames', true, (row) => row.frames / row.seeds], ['state', false, (row) => row.state]];
 // A training that has its frames and is still closing is at work too.
 const at_work = ({ state }) => state === 'running' || state === 'evaluating';
 const ORDER = { surely: 3, mean: 2, over: 1, unknown: 0 };
