@@ -268,3 +268,25 @@ fn frames_are_sorted_by_what_the_rows_show() {
     assert!(first.as_str().unwrap().contains("seed 9"), "{first}");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
+
+#[test]
+fn a_film_that_cannot_be_made_says_why() {
+    let folder = folder("comparing-film");
+    write_seed(&folder, "one", 1, 20);
+    let address = serve(&folder, None);
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let said = "document.querySelector('.bad[role=status]')?.innerText";
+    // A run without checkpoints.
+    browser.go(&format!("http://{address}/#run?id={}", all(address)));
+    browser.wait("document.getElementById('film')");
+    browser.script("document.getElementById('film').click()");
+    browser.wait(&format!("{said}?.includes('Film: ') && {said}.includes('no checkpoint')"));
+    // One that can is kept under the server's name for it.
+    browser.go(&format!(
+        "http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3&hard=true&size=160x120&beside="
+    ));
+    browser.wait("document.querySelector('#numbers b')");
+    browser.script("window.kept = null; const click = HTMLAnchorElement.prototype.click; HTMLAnchorElement.prototype.click = function () { if (this.href.startsWith('blob:')) window.kept = this.download; else click.call(this); }; document.getElementById('film').click()");
+    browser.wait_long("window.kept == 'VolcanicVentureLevel1-v0-seed3.mp4'");
+    browser.wait("document.getElementById('film').ariaBusy == 'false'");
+}

@@ -10,8 +10,8 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-// Puts other children into a place. What was scrolled there stays where it was, and what had the focus passes it to what now has its
-// name: a page that follows a run is not torn from under the reader with each new row.
+// Puts other children into a place. What was scrolled there stays where it was, and what had the focus passes it to what now has
+// its name: a page that follows a run is not torn from under the reader with each new row.
 export function renew(place, ...children) {
   const name = (one) => `${one.tagName} ${one.getAttribute('aria-label') ?? one.textContent}`;
   const scrolled = () => [...place.querySelectorAll('.scroll')];
@@ -65,6 +65,35 @@ export async function ask(path) {
   const body = await answer.json();
   if (!answer.ok) throw new Error(body.error ?? answer.statusText);
   return body;
+}
+
+// Keeps bytes as a file.
+export function save(blob, name) {
+  const link = make('a', { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+// Has a link fetch a file that the server makes when it is asked: `said` says that it is in the making, or why there is none. A
+// link of the browser's own would drop the reason and seem to do nothing.
+export function fetch_on_click(link, said) {
+  link.addEventListener('click', async (event) => {
+    event.preventDefault();
+    if (link.ariaBusy === 'true') return;
+    const say = (text, kind) => { said.textContent = text; said.className = kind; };
+    link.ariaBusy = 'true';
+    say('In the making; some seconds.', 'pale');
+    try {
+      const answer = await fetch(link.href);
+      if (!answer.ok) throw new Error((await answer.json()).error ?? answer.statusText);
+      save(await answer.blob(), /filename="([^"]+)"/.exec(answer.headers.get('content-disposition') ?? '')?.[1] ?? '');
+      say('', 'pale');
+    } catch (error) {
+      say(`${link.textContent}: ${error.message}.`, 'bad');
+    }
+    link.ariaBusy = 'false';
+  });
+  return link;
 }
 
 // Writes to the server; gives its answer or throws its reason.

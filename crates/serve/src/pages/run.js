@@ -1,4 +1,4 @@
-import { ask, choose, field, keepState, make } from '/dom.js';
+import { ask, choose, fetch_on_click, field, keepState, make } from '/dom.js';
 import { Chart, Shared } from '/chart.js';
 import { colour } from '/svg.js';
 import { column } from '/curves.js';
@@ -18,7 +18,9 @@ export function run(main, query) {
   const title = make('h1', {}, 'Run');
   const tiles = make('div', { class: 'strip', id: 'strip' });
   const link = (text, to, more = {}) => make('a', { class: 'button', href: to, ...more }, text);
-  const links = make('p', { class: 'row links' }, link('Watch', `#watch?agent=run:${id}&best=true`), link('Film', `/api/film?agent=run:${id}&best=true&seed=1`, { download: true, title: 'An episode of seed 1 as MP4, with the selected checkpoint' }), link('Report', `/api/report?runs=${id}`, { target: '_blank' }), link('Compare', `#runs?chosen=${id}`), link('All runs', '#runs'));
+  const filmed = make('span', { role: 'status' });
+  const film = fetch_on_click(link('Film', `/api/film?agent=run:${id}&best=true&seed=1`, { id: 'film', title: 'An episode of seed 1 as MP4, with the selected checkpoint' }), filmed);
+  const links = make('p', { class: 'row links' }, link('Watch', `#watch?agent=run:${id}&best=true`), film, link('Report', `/api/report?runs=${id}`, { target: '_blank' }), link('Compare', `#runs?chosen=${id}`), link('All runs', '#runs'), filmed);
   const heat = new Heatmap(id, (frames) => { shared.moment = in_axis(frames); shared.charts.forEach((chart) => chart.update_readout()); });
   const picked = make('div'), charts = make('div', { class: 'charts' }), settings = make('div'), other = make('span'), beside = make('div');
   const bar = tools(shared, query, (again) => { keep(); if (again) draw(); });

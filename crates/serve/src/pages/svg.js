@@ -1,5 +1,5 @@
 // Shapes from data, and pictures of them as files. Colours stand in the shapes themselves, so that a saved file looks as the page did.
-import { make } from '/dom.js';
+import { make, save } from '/dom.js';
 
 const SPACE = 'http://www.w3.org/2000/svg';
 export const FONT = 'system-ui, sans-serif';
@@ -69,12 +69,6 @@ export function standalone(svg, title, legend = []) {
     whole.append(path([[entry.at, y], [entry.at + 22, y]], { stroke: entry.colour, 'stroke-width': 3, 'stroke-dasharray': entry.dash }), text(entry.name, entry.at + 28, y + 4, pale));
   }));
   return whole;
-}
-
-function save(blob, name) {
-  const link = make('a', { href: URL.createObjectURL(blob), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
 const svg_blob = (svg) => new Blob([new XMLSerializer().serializeToString(svg)], { type: 'image/svg+xml' });

@@ -1,4 +1,4 @@
-import { ask, choose, field, keepState, make, number, wrong_seed } from '/dom.js';
+import { ask, choose, fetch_on_click, field, keepState, make, number, wrong_seed } from '/dom.js';
 import { Screen } from '/screen.js';
 import { env_name, path_rest } from '/names.js';
 import { Timeline } from '/timeline.js';
@@ -25,7 +25,8 @@ export function watch(main, query) {
   const link = make('p', { class: 'bad', role: 'alert' });
   const canvases = Object.fromEntries(['colour', ...VIEWS].map((view) => [view, make('canvas', { class: 'view', role: 'img', 'aria-label': `${view} view`, width: 320, height: 240 })]));
   const figures = Object.fromEntries(VIEWS.map((view) => [view, make('figure', { 'data-view': view }, canvases[view], make('figcaption', {}, view === 'automap' ? 'map' : view))]));
-  const film = make('a', { class: 'button', id: 'film', download: true, title: 'The whole episode as MP4' }, 'Download film');
+  const filmed = make('span', { role: 'status' });
+  const film = fetch_on_click(make('a', { class: 'button', id: 'film', title: 'The whole episode as MP4' }, 'Download film'), filmed);
   const button = (text, title, onclick, more = {}) => make('button', { title, onclick, ...more }, text);
   const pair = new Pair();
   const send = (message) => { screen?.ask(message); pair.ask(message); };
@@ -47,7 +48,7 @@ export function watch(main, query) {
     make('section', { class: 'stage' },
       make('div', { class: 'card' }, make('div', { class: 'pair' }, make('figure', {}, canvases.colour, pair.first), pair.element), numbers, time.slide, time.line, time.key,
         make('div', { class: 'row' }, go, button('+1 frame', '.', () => send({ do: 'tic' }), { id: 'tic' }), button('−1 action', 'Left arrow', () => jump(step - 1)), button('+1 action', 'Right arrow', () => jump(step + 1)), speed, next,
-          make('label', { class: 'check' }, on, 'go on with the next seed'), copy, film, copied),
+          make('label', { class: 'check' }, on, 'go on with the next seed'), copy, film, copied, filmed),
         make('p', { class: 'pale' }, 'Keys: Space plays and pauses, the full stop shows one frame (a game tic), arrows go an action back and on.')),
       make('div', { class: 'card side' }, make('div', { class: 'beside' }, figures.automap, figures.depth, figures.segmented), episodes.element,
         make('h2', {}, 'Policy'), thoughts, make('h2', {}, 'Events'), make('p', { class: 'pale' }, 'Click one to jump to the moment before it.'), time.events)));
