@@ -290,3 +290,26 @@ fn a_film_that_cannot_be_made_says_why() {
     browser.wait_long("window.kept == 'VolcanicVentureLevel1-v0-seed3.mp4'");
     browser.wait("document.getElementById('film').ariaBusy == 'false'");
 }
+
+#[test]
+fn a_game_that_is_left_before_it_begins_does_not_begin() {
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let address = serve(&folder("comparing-left"), None);
+    browser.go(&format!("http://{address}/#runs"));
+    browser.wait("document.querySelector('#page section')");
+    // The list of environments comes when the page of it has been left.
+    browser.script("window.games = 0; window.answered = 0; const Socket = WebSocket; window.WebSocket = function (...all) { window.games += 1; return new Socket(...all); }; Object.assign(window.WebSocket, { OPEN: 1, CONNECTING: 0 }); const ask = window.fetch; window.fetch = async (path) => { const answer = await ask(path); if (path !== '/api/envs') return answer; await new Promise((done) => { window.go_on = done; }); window.answered += 1; return answer; }; location.hash = '#play'");
+    browser.wait("window.go_on");
+    browser.script("location.hash = '#runs'");
+    browser.wait("!document.getElementById('game')");
+    browser.script("window.go_on()");
+    browser.wait("window.answered == 1");
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    assert_eq!(browser.script("return window.games"), json!(0));
+    // Who stays gets one.
+    browser.script("window.go_on = null; location.hash = '#play'");
+    browser.wait("window.go_on");
+    browser.script("window.go_on()");
+    browser.wait("document.querySelector('#numbers b') && window.games == 1");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

@@ -9,7 +9,7 @@ const TOUCH = [['TURN_LEFT', '↺'], ['MOVE_FORWARD', '↑'], ['TURN_RIGHT', '�
 export function play(main, query) {
   const first = query.get('env') ?? 'RemedyRushLevel1-v0';
   const now = { env: first, seed: query.get('seed') ?? task_of(first).seed, size: query.get('size') ?? '640x480', full: query.get('full') ?? '', hard: query.get('hard') ?? '' };
-  let screen = null, paused = true, ended = false, looks = false, began = false, before = null, rows = [], keys = keys_of([], false), whole = 60;
+  let screen = null, paused = true, ended = false, gone = false, looks = false, began = false, before = null, rows = [], keys = keys_of([], false), whole = 60;
   const form = make('div', { class: 'row' });
   const link = make('p', { class: 'bad', role: 'alert' });
   const canvas = make('canvas', { class: 'view', id: 'game', tabindex: 0, role: 'application', 'aria-label': 'The game. H shows the keys of this task.', width: 640, height: 480 });
@@ -108,7 +108,7 @@ export function play(main, query) {
 
   async function best() {
     const all = await ask('/api/best');
-    if (!all) return;
+    if (!all || gone) return;
     rows = all.filter((row) => row.env === now.env && row.within);
     const here = rows.slice(0, 50);
     table.replaceChildren(...here.map((row) => make('tr', {}, make('td', {}, row.who), make('td', { class: 'number' }, number(row.return)), make('td', { class: `number ${row.within ? 'good' : 'bad'}` }, `${number(row.cost)} of ${number(row.budget)}`),
@@ -146,6 +146,8 @@ export function play(main, query) {
 
   async function controls() {
     const what = await ask('/api/envs');
+    // Left before the answer came: a game that began now would have nobody to end it.
+    if (gone) return;
     if (!what) { setTimeout(controls, 1500); return; }
     const set = (name) => (value) => { now[name] = value; open(); };
     const seed = make('input', { type: 'number', min: 0, value: now.seed, style: 'width:7rem', onchange: () => set('seed')(seed.value || '1') });
@@ -155,5 +157,5 @@ export function play(main, query) {
   }
   const wrong = (error) => { link.textContent = error.message; };
   controls().catch(wrong);
-  return () => { screen?.end(); for (const [name, listener] of Object.entries(listened)) removeEventListener(name, listener); if (caught()) document.exitPointerLock(); };
+  return () => { gone = true; screen?.end(); for (const [name, listener] of Object.entries(listened)) removeEventListener(name, listener); if (caught()) document.exitPointerLock(); };
 }
