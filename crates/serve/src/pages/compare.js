@@ -20,10 +20,11 @@ export class Comparison {
     this.seeds.checked = query.get('seeds') !== 'false';
     this.report = make('a', { class: 'button', target: '_blank' }, 'Report of these runs');
     this.legend = make('div', { class: 'row legend', role: 'group', 'aria-label': 'Curves' });
+    this.wrong = make('p', { class: 'bad', role: 'alert' });
     [this.picked, this.facets, this.table, this.pareto, this.differences] = Array.from({ length: 5 }, () => make('div'));
     const bar = tools(this.shared, query, (again) => { if (again) this.draw(); onchange(); });
     bar.append(make('label', { class: 'check' }, this.seeds, 'mean and 95 % interval over seeds'), this.report);
-    this.element = make('section', { class: 'card', hidden: true, id: 'curves' }, make('h2', {}, 'Compare'), bar, this.picked, this.legend, this.facets,
+    this.element = make('section', { class: 'card', hidden: true, id: 'curves' }, make('h2', {}, 'Compare'), bar, this.picked, this.wrong, this.legend, this.facets,
       make('p', { class: 'note' }, 'Drag over a curve to look closer, double-click to go back; with the keyboard +, -, arrows and 0.'),
       make('h2', {}, 'Inter-quartile means over seeds'), this.table, this.pareto, make('h2', {}, 'Settings that differ'), this.differences);
   }
@@ -58,7 +59,10 @@ export class Comparison {
 
   async load(turn = this.asked) {
     const ids = this.runs.map((run) => run.id).join(',');
-    const [data, means, metrics] = await Promise.all([ask(`/api/curves?runs=${ids}&columns=${[...this.chosen].map(encodeURIComponent).join(',')}`), ask(`/api/compare?runs=${ids}`), ask(`/api/metrics?runs=${ids}`)]);
+    const asked = Promise.all([ask(`/api/curves?runs=${ids}&columns=${[...this.chosen].map(encodeURIComponent).join(',')}`), ask(`/api/compare?runs=${ids}`), ask(`/api/metrics?runs=${ids}`)]);
+    let why = '';
+    const [data, means, metrics] = await asked.catch((error) => { why = error.message; return []; });
+    if (turn === this.asked) this.wrong.textContent = why;
     // Answers may overtake each other: only the one to what is chosen now counts.
     if (!data || !means || !metrics || turn !== this.asked) return;
     this.data = data;
