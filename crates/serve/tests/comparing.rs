@@ -1,6 +1,7 @@
 //! The pages that put runs and metrics side by side: what is counted, drawn, named and kept.
 
 #[path = "common/browser.rs"]
+#[allow(dead_code, reason = "another test takes photographs")]
 mod browser;
 mod common;
 
