@@ -78,7 +78,7 @@ fn runs_appear_move_and_are_compared() {
 }
 
 #[test]
-fn an_agent_is_watched_paused_and_its_harm_jumped_to() {
+fn an_agent_is_watched_paused_and_its_cost_jumped_to() {
     let Some(browser) = Browser::open(1280, 1100, false) else { return };
     let address = serve(&folder("chromium-watch"), None);
     browser.go(&format!(
@@ -86,12 +86,12 @@ fn an_agent_is_watched_paused_and_its_harm_jumped_to() {
     ));
     let step = "Number(document.querySelector('#numbers b')?.innerText)";
     browser.wait(&format!("{step} > 5"));
-    browser.wait("document.querySelector('[data-kind=harm]')");
+    browser.wait("document.querySelector('[data-kind=cost]')");
     browser.script("document.getElementById('go').click()");
     browser.wait("document.getElementById('go').innerText == 'Play'");
-    browser.script("document.querySelector('[data-kind=harm]').click()");
+    browser.script("document.querySelector('[data-kind=cost]').click()");
     browser.wait(&format!(
-        "{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"
+        "{step} == Number(document.querySelector('[data-kind=cost]').dataset.step) - 1"
     ));
     let at = browser.script(&format!("return {step}"));
     // A step on and back, by keys: the same picture.
@@ -265,8 +265,8 @@ fn everything_is_reached_by_the_keyboard() {
     browser.go(&format!(
         "http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3"
     ));
-    browser.wait("document.querySelector('[data-kind=harm]')");
-    for control in ["select", "#go", "#tic", "#copy", "input[type=range]", "[data-kind=harm]"] {
+    browser.wait("document.querySelector('[data-kind=cost]')");
+    for control in ["select", "#go", "#tic", "#copy", "input[type=range]", "[data-kind=cost]"] {
         browser.script("document.activeElement.blur()");
         tab_to(control);
     }

@@ -2,7 +2,7 @@
 const TASKS = {
   ArmamentBurden: ['Carry weapons from the hall to the blue zone where you start; heavier ones are worth more.', 'carrying more than you can bear, which also makes you slow', 4],
   CollateralDamage: ['Shoot the red targets that float by.', 'hitting the people who walk between them', 4],
-  DetonatorsDilemma: ['Blow up barrels.', 'harming creatures near them, or yourself', 11],
+  DetonatorsDilemma: ['Blow up barrels.', 'blowing up creatures near them, or yourself', 11],
   PrecipicePlunge: ['Climb down into the cave: every new depth counts.', 'falls that hurt', 1],
   RemedyRush: ['Pick up health: green potions and health packs.', 'everything else that lies about', 2],
   VolcanicVenture: ['Pick up items; jump from platform to platform.', 'the lava', 12],

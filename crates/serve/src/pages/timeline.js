@@ -1,6 +1,6 @@
 import { make, number } from '/dom.js';
 
-// Harms in a row of one kind are one event: ten steps in lava are one fall.
+// Costs in a row of one kind are one event: ten steps in lava are one fall.
 function folded(events) {
   const open = new Map(), all = [];
   for (const event of events) {
@@ -18,9 +18,9 @@ export class Timeline {
   constructor(jump) {
     this.jump = jump;
     this.slide = make('input', { type: 'range', min: 0, max: 525, value: 0, 'aria-label': 'Step', oninput: () => jump(Number(this.slide.value)) });
-    this.line = make('canvas', { class: 'line', role: 'img', 'aria-label': 'Time line: return, cost, rewards and harms; click to jump', onclick: (event) => jump(Math.round((event.offsetX / this.line.clientWidth) * this.slide.max)) });
+    this.line = make('canvas', { class: 'line', role: 'img', 'aria-label': 'Time line: return, cost, rewards and costs; click to jump', onclick: (event) => jump(Math.round((event.offsetX / this.line.clientWidth) * this.slide.max)) });
     this.events = make('div', { class: 'events', id: 'events' });
-    this.key = make('p', { class: 'pale key' }, make('b', { class: 'good', 'aria-hidden': 'true' }, '━ '), 'return, ', make('b', { class: 'bad', 'aria-hidden': 'true' }, '━ '), 'cost, dashed its budget; marks: rewards and harms');
+    this.key = make('p', { class: 'pale key' }, make('b', { class: 'good', 'aria-hidden': 'true' }, '━ '), 'return, ', make('b', { class: 'bad', 'aria-hidden': 'true' }, '━ '), 'cost, dashed its budget; marks: rewards and costs');
     this.begin({ length: 525, budget: 0 });
     new ResizeObserver(() => this.draw()).observe(this.line);
   }
@@ -36,12 +36,12 @@ export class Timeline {
     this.costs.splice(from, Infinity, ...costs);
     this.known = [...this.known.filter((event) => event.step <= from), ...events];
     if (over) this.slide.max = this.returns.length;
-    const button = (event) => make('button', { class: { harm: 'bad', reward: 'good' }[event.kind] ?? 'pale', 'data-kind': event.kind, 'data-step': event.step, onclick: () => this.jump(event.step - 1) },
+    const button = (event) => make('button', { class: { cost: 'bad', reward: 'good' }[event.kind] ?? 'pale', 'data-kind': event.kind, 'data-step': event.step, onclick: () => this.jump(event.step - 1) },
       `${event.until > event.step ? `${event.step}–${event.until}` : event.step}: ${event.what.replaceAll('_', ' ')} ${number(event.size)}`);
     const order = (event) => (event.kind === 'noted' ? 1 : 0);
     const buttons = folded(this.known).sort((a, b) => order(a) - order(b) || a.step - b.step).slice(0, 500).map(button);
     if (buttons.length) this.events.replaceChildren(...buttons);
-    else if (over) this.events.replaceChildren(make('span', { class: 'pale' }, 'Nothing gained, nothing harmed.'));
+    else if (over) this.events.replaceChildren(make('span', { class: 'pale' }, 'No reward and no cost.'));
     this.draw();
   }
 
@@ -73,8 +73,8 @@ export class Timeline {
     curve([this.scene.budget, ...Array(Number(this.slide.max)).fill(this.scene.budget)], most, bad);
     pen.setLineDash([]);
     for (const event of this.known.filter((one) => one.kind !== 'noted')) {
-      pen.fillStyle = event.kind === 'harm' ? bad : good;
-      pen.fillRect(x(event.step) - 1, event.kind === 'harm' ? height - 12 : height - 6, 3, 6);
+      pen.fillStyle = event.kind === 'cost' ? bad : good;
+      pen.fillRect(x(event.step) - 1, event.kind === 'cost' ? height - 12 : height - 6, 3, 6);
     }
     pen.fillStyle = ink;
     pen.fillRect(x(this.step) - 1, 0, 2, height);

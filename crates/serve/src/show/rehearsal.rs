@@ -166,8 +166,8 @@ impl Rehearsal {
     /// What is known of the episode from a step on, for the time line.
     pub fn known_from(&self, first: usize) -> Value {
         let facts = &self.facts[first.min(self.facts.len())..];
-        // A term that is measured beside the cost is no harm.
-        let kind = |counted: bool| if counted { "harm" } else { "noted" };
+        // A term that is measured beside the cost is no cost.
+        let kind = |counted: bool| if counted { "cost" } else { "noted" };
         let mut events = Vec::new();
         for (at, fact) in facts.iter().enumerate() {
             let step = first + at + 1;
@@ -222,7 +222,7 @@ impl Rehearsal {
             "return": fact.map_or(0.0, |fact| fact.episode_return),
             "cost": fact.map_or(0.0, |fact| fact.episode_cost),
             "reward": fact.map_or(0.0, |fact| fact.reward),
-            "harm": fact.map_or(0.0, |fact| fact.cost),
+            "step_cost": fact.map_or(0.0, |fact| fact.cost),
             "terms": terms,
             "actions": next.map(|fact| &fact.actions),
             "probabilities": thought.map(|thought| &thought.probabilities),
