@@ -8,7 +8,7 @@
 use serde_json::Value;
 use std::fs::{self, File};
 use std::io::Write;
-use std::os::unix::process::ExitStatusExt;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -48,7 +48,8 @@ impl Folder {
     }
 
     fn start(&self, line: &str) -> Running {
-        Running(self.command(line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap())
+        let mut command = self.command(line);
+        Running(interruptible(command.stdout(Stdio::null()).stderr(Stdio::null())).spawn().unwrap())
     }
 
     fn checkpoints(&self, run: &str) -> Vec<String> {
@@ -66,8 +67,23 @@ impl Drop for Folder {
     }
 }
 
+/// Where the tests run in the background of a script, SIGINT is ignored, and what they start would
+/// inherit that.
+fn interruptible(command: &mut Command) -> &mut Command {
+    // SAFETY: `signal` may be called between fork and exec.
+    unsafe {
+        command.pre_exec(|| {
+            libc::signal(libc::SIGINT, libc::SIG_DFL);
+            Ok(())
+        })
+    }
+}
+
 /// A process that ends with the test.
 struct Running(Child);
+
+/// A process that takes longer to end does not end.
+const HANGS: Duration = Duration::from_secs(120);
 
 impl Running {
     fn signal(&self, name: &str) {
@@ -78,13 +94,13 @@ impl Running {
         assert!(status.success());
     }
 
-    fn wait(&mut self, most: Duration) -> ExitStatus {
+    fn wait(&mut self) -> ExitStatus {
         let begun = Instant::now();
         loop {
             if let Some(status) = self.0.try_wait().unwrap() {
                 return status;
             }
-            assert!(begun.elapsed() < most, "it does not end");
+            assert!(begun.elapsed() < HANGS, "it does not end");
             std::thread::sleep(Duration::from_millis(10));
         }
     }
@@ -108,7 +124,7 @@ fn names(folder: &Path) -> Vec<String> {
 fn wait_for(what: &str, there: impl Fn() -> bool) {
     let begun = Instant::now();
     while !there() {
-        assert!(begun.elapsed() < Duration::from_secs(60), "{what} does not come");
+        assert!(begun.elapsed() < HANGS, "{what} does not come");
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -216,7 +232,7 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
         let mut run = folder.start(&format!("{SMALL} {ENDLESS} --out {name}"));
         wait_for("the run", || folder.0.join(name).join("metrics.jsonl").exists());
         run.signal(name);
-        let status = run.wait(Duration::from_secs(30));
+        let status = run.wait();
         assert_eq!(status.signal(), Some(number), "{name}: {status}");
         assert!(!folder.checkpoints(name).is_empty(), "{name}: no checkpoint");
     }
@@ -232,7 +248,7 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
     std::thread::sleep(Duration::from_millis(300));
     assert!(run.0.try_wait().unwrap().is_none(), "it ended with its terminal");
     run.signal("TERM");
-    run.wait(Duration::from_secs(30));
+    run.wait();
     // A shell's loop ends, and its code is the usual one.
     let line = format!("{} {SMALL} {ENDLESS} --quiet", env!("CARGO_BIN_EXE_hasard"));
     let script =
@@ -243,23 +259,15 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
         .current_dir(&folder.0)
         .stderr(Stdio::null())
         .stdout(Stdio::piped());
-    // Where the tests run in the background of a script, SIGINT is ignored, and bash would inherit
-    // that.
-    // SAFETY: `signal` may be called between fork and exec.
-    unsafe {
-        std::os::unix::process::CommandExt::pre_exec(shell, || {
-            libc::signal(libc::SIGINT, libc::SIG_DFL);
-            Ok(())
-        });
-    }
-    let mut shell =
-        Running(std::os::unix::process::CommandExt::process_group(shell, 0).spawn().unwrap());
+    let mut shell = Running(interruptible(shell).process_group(0).spawn().unwrap());
     wait_for("the loop", || folder.0.join("loop1/metrics.jsonl").exists());
     let group = format!("-{}", shell.0.id());
     assert!(Command::new("kill").args(["-INT", "--", &group]).status().unwrap().success());
-    shell.wait(Duration::from_secs(30));
+    shell.wait();
     assert!(!folder.0.join("loop2").exists(), "the loop went on");
-    let script = format!("{line} --out coded & sleep 2; kill -TERM $!; wait $!; echo $?");
+    let script = format!(
+        "{line} --out coded & until [ -e coded/metrics.jsonl ]; do sleep 0.05; done; kill -TERM $!; wait $!; echo $?"
+    );
     let mut shell = Command::new("bash");
     let code =
         shell.args(["-c", &script]).current_dir(&folder.0).stderr(Stdio::null()).output().unwrap();
@@ -276,7 +284,7 @@ fn signals_end_a_training_in_the_midst_of_an_evaluation() {
     wait_for("the run", || folder.0.join("run/metrics.jsonl").exists());
     std::thread::sleep(Duration::from_secs(2));
     run.signal("TERM");
-    assert_eq!(run.wait(Duration::from_secs(20)).signal(), Some(15));
+    assert_eq!(run.wait().signal(), Some(15));
     assert_eq!(
         (folder.checkpoints("run"), rows(&folder.0.join("run"))),
         (vec!["frames_000000000128".to_string()], 0)
@@ -286,7 +294,7 @@ fn signals_end_a_training_in_the_midst_of_an_evaluation() {
     let mut run = folder.start(&format!("{SMALL} --resume --out run {few}"));
     std::thread::sleep(Duration::from_secs(2));
     run.signal("INT");
-    assert_eq!(run.wait(Duration::from_secs(20)).signal(), Some(2));
+    assert_eq!(run.wait().signal(), Some(2));
     let few = "--set evaluation.episodes=2 --set evaluation.confirming_episodes=3";
     folder.ok(&format!("{SMALL} --resume --out run {few}"));
     let row: Value =
@@ -322,7 +330,7 @@ fn other_long_commands_end_at_once_and_leave_no_half_of_a_file() {
                 }),
             }
             run.signal(name);
-            assert_eq!(run.wait(Duration::from_secs(10)).signal(), Some(number), "{line}");
+            assert_eq!(run.wait().signal(), Some(number), "{line}");
         }
     }
     let left = names(&folder.0.join("out"));
@@ -358,7 +366,7 @@ fn nothing_that_a_sweep_started_outlives_it() {
         });
         assert_eq!(processes(&folder.0), 3);
         sweep.signal(name);
-        assert_eq!(sweep.wait(Duration::from_secs(30)).signal(), Some(number), "{name}");
+        assert_eq!(sweep.wait().signal(), Some(number), "{name}");
         if name == "KILL" {
             wait_for("the runs' end", || processes(&folder.0) == 0);
         }
@@ -380,7 +388,7 @@ fn what_a_killed_run_wrote_is_one_story_after_it_was_resumed() {
         let before = rows(&folder.0.join("run"));
         wait_for("rows", || rows(&folder.0.join("run")) > before + 40);
         run.signal("KILL");
-        run.wait(Duration::from_secs(5));
+        run.wait();
     }
     let more = folder.config("run")["frames"].as_u64().unwrap();
     assert_eq!(more, 900_000_000);
@@ -388,7 +396,7 @@ fn what_a_killed_run_wrote_is_one_story_after_it_was_resumed() {
     wait_for("the checkpoint", || folder.0.join("run/metrics.jsonl").exists());
     std::thread::sleep(Duration::from_millis(800));
     run.signal("TERM");
-    run.wait(Duration::from_secs(20));
+    run.wait();
     let text = fs::read_to_string(folder.0.join("run/metrics.jsonl")).unwrap();
     let frames: Vec<u64> = text
         .lines()

@@ -1,4 +1,4 @@
-//! `hasard serve` from the first training to the link of a moment of harm, in a real browser.
+//! `hasard serve` from the first training to the link of a moment of cost, in a real browser.
 
 #![cfg(feature = "serve")]
 
@@ -50,7 +50,7 @@ fn serve(folder: &Path, listen: &str) -> (Running, String) {
 }
 
 #[test]
-fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
+fn a_training_is_followed_and_its_agent_watched_to_its_cost() {
     let Some(browser) = Browser::open(1280, 1000, false) else { return };
     let folder = folder("agent");
     let (server, address) = serve(&folder, "localhost:0");
@@ -104,10 +104,10 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     browser
         .wait(&format!("{sums}.length >= 3 && {sums}.every((sum) => Math.abs(sum - 1) < 0.001)"));
     browser.wait("['return value (normalised)', 'cost value (normalised)'].every((name) => [...document.querySelectorAll('#numbers > span')].some((one) => one.firstChild.textContent == name && /^-?[0-9.]+$/.test(one.lastChild.innerText)))");
-    browser.wait_long("document.querySelector('[data-kind=harm]')");
-    browser.script("document.querySelector('[data-kind=harm]').click()");
+    browser.wait_long("document.querySelector('[data-kind=cost]')");
+    browser.script("document.querySelector('[data-kind=cost]').click()");
     browser.wait(&format!(
-        "{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"
+        "{step} == Number(document.querySelector('[data-kind=cost]').dataset.step) - 1"
     ));
     std::thread::sleep(std::time::Duration::from_millis(1000));
     browser.photograph("serve_watch_agent");
