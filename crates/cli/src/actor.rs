@@ -151,13 +151,15 @@ impl Performance {
     }
 }
 
-/// The run directory or file of the agent that a policy's text names: `run:DIR`, `run:FILE.agent`
-/// or `zoo:NAME`.
+/// The run directory or file of the agent that a policy's text names: `run:DIR`, `FILE.agent`
+/// (`run:` may stand before it) or `zoo:NAME`.
 pub fn agent_of(policy: &OsStr) -> Result<Option<PathBuf>, Failure> {
     if zoo::after(policy, "zoo:").is_some() {
         return zoo::find(policy).map(Some);
     }
-    Ok(zoo::after(policy, "run:"))
+    let file =
+        || Some(PathBuf::from(policy)).filter(|path| path.extension() == Some("agent".as_ref()));
+    Ok(zoo::after(policy, "run:").or_else(file))
 }
 
 /// What a command that films says of places: its maps are those that are played in, but its

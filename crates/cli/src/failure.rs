@@ -171,6 +171,11 @@ fn elsewhere(flag: &str) -> Option<String> {
     if ["on", "workers"].contains(&name) {
         return Some(format!("there is no {flag}; only the `hasard` of `pip install .` has it"));
     }
+    if ["env", "environment", "task"].contains(&name) {
+        return Some(format!(
+            "there is no {flag}; environments stand without a flag, as in `hasard rollout ENV --policy AGENT`, which plays an agent in any"
+        ));
+    }
     let train = crate::args::Cli::command();
     let train = train.find_subcommand("train")?;
     let of_train = |name: &str| train.get_arguments().any(|one| one.get_long() == Some(name));

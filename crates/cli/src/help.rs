@@ -99,6 +99,10 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
                 "hasard eval runs/vv1 --episodes 100 --worst 3 -o worst.mp4",
                 "a run's agent, and a film of its worst episodes",
             ),
+            (
+                "hasard rollout VolcanicVentureLevel3 --policy zoo:{env}",
+                "an agent in another environment than its own",
+            ),
         ],
     ),
     (

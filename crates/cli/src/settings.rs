@@ -45,8 +45,8 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
 /// A policy that looks at nothing, by its text.
 pub fn policy(text: &OsStr) -> Result<Policy, Failure> {
     let text = text.to_string_lossy();
-    let beside =
-        "; run:DIR is the agent of a training run, zoo:NAME one that comes with the program";
+    let beside = "; run:DIR is the agent of a training run, FILE.agent one that was exported, \
+                  zoo:NAME one that comes with the program";
     text.parse().map_err(|error: EnvError| Failure::bad(format!("{error}{beside}")))
 }
 

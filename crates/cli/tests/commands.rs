@@ -57,6 +57,8 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("render RemedyRushLevel1-v0 --step 99999", &["--step 99999", "ends at step"]),
         ("render RemedyRushLevel1-v0 --policy fly", &["fly", "random"]),
         ("render RemedyRushLevel1-v0 --policy run:folder", &["folder"]),
+        ("rollout RemedyRushLevel1-v0 --policy none.agent", &["none.agent", "export-agent"]),
+        ("eval zoo:RemedyRushLevel1 --env RemedyRushLevel2", &["--env", "rollout ENV --policy"]),
         ("render RemedyRushLevel1-v0 --buffer heat", &["heat", "automap"]),
         ("render RemedyRushLevel1-v0 --iwad text.wad", &["text.wad"]),
         ("render RemedyRushLevel1-v0 --iwad cut.wad", &["cut.wad"]),

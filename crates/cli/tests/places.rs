@@ -154,7 +154,7 @@ fn names_that_are_not_text_are_taken_by_every_command() {
     folder.ok("", "export-agent", &[run, OsStr::new("-o"), agent]);
     folder.ok("", "eval --episodes 1", &[agent]);
     folder.ok("", "record --steps 2 -o b.gif", &[agent]);
-    for policy in [with("run:", run), with("run:", agent)] {
+    for policy in [with("run:", run), with("run:", agent), agent.to_owned()] {
         folder.ok("", &format!("rollout {ENV} --episodes 1 --policy"), &[&policy]);
         folder.ok("", &format!("render {ENV} --step 1 -o c.png --policy"), &[&policy]);
         folder.ok("", &format!("record {ENV} --steps 1 -o d.gif --policy"), &[&policy]);

@@ -95,7 +95,7 @@ pub struct RenderArgs {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW,...")]
     pub beside: Vec<View>,
     /// Who acts before the picture: random, sticky:K, noop, hold:BUTTON+BUTTON,
-    /// hold-after:K:BUTTON, run:DIR, zoo:NAME
+    /// hold-after:K:BUTTON, run:DIR, FILE.agent, zoo:NAME
     #[arg(long, default_value = "random")]
     pub policy: OsString,
     /// Policy steps before the picture
@@ -125,7 +125,7 @@ pub struct RecordArgs {
     #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
     pub out: PathBuf,
     /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR,
-    /// zoo:NAME [default: random]
+    /// FILE.agent, zoo:NAME [default: random]
     #[arg(long)]
     pub policy: Option<OsString>,
     /// Most policy steps that are taken; to the episode's end if absent

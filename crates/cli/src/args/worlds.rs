@@ -65,7 +65,7 @@ pub struct RolloutArgs {
     #[arg(value_parser = env_id)]
     pub env: String,
     /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, shuttle, carrier, run:DIR,
-    /// zoo:NAME; `hasard envs --json` lists the buttons
+    /// FILE.agent, zoo:NAME; `hasard envs --json` lists the buttons
     #[arg(long, default_value = "random")]
     pub policy: OsString,
     /// Number of episodes

@@ -302,7 +302,7 @@ pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
     if !path.exists() {
         return Err(LearnError::content(
             path,
-            "nothing is here; give the directory of `hasard train --out`",
+            "nothing is here; give the directory of `hasard train --out` or a file of `hasard export-agent`",
         ));
     }
     if !file.exists() {
