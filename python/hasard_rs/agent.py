@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from hasard_rs.arguments import check_seed, is_number, is_whole, over, plain
 from hasard_rs.errors import HasardError, InvalidOption
 from hasard_rs.own import from_text
 from hasard_rs.progress import Bar
-from hasard_rs.registry import bare
+from hasard_rs.registry import bare, spec
 
 Report = dict[str, Any]
 """A row of metrics.jsonl: frames, return, cost, multipliers and so on, by name."""
@@ -293,14 +293,28 @@ class Agent:
         terms = None if cost_terms is None else np.atleast_2d(cost_terms).astype(float).tolist()
         return _State(state.memory, np.atleast_1d(costs).astype(float).tolist(), np.atleast_1d(over).astype(bool).tolist(), terms)
 
-    def evaluate(self, episodes: int = 20, seed: int = 0, *, best: bool | None = None, greedy: bool | None = None) -> list[dict[str, Any]]:
+    def evaluate(
+        self,
+        episodes: int = 20,
+        seed: int = 0,
+        *,
+        env_id: str | os.PathLike[str] | None = None,
+        rules: str | None = None,
+        best: bool | None = None,
+        greedy: bool | None = None,
+    ) -> list[dict[str, Any]]:
         """Plays episodes in worlds like those that the agent was trained in; the result is what `hasard eval --json` prints.
+
+            agent.evaluate(200, seed=1_000_000, env_id="RemedyRushLevel3-v0")
 
         The weights that were loaded play, whatever has been written to the run since.
 
         Args:
             episodes: how many.
             seed: of the first.
+            env_id: another environment with the same buttons, such as another level: an id, or a task's file. It and `rules` hold the agent to
+                that task's own budget; None: the agent's own.
+            rules: "paper", "released" or "tables"; None: the agent's own.
             best: as of `load`; None: as this agent was loaded. Another than that loads the run anew.
             greedy: the same.
 
@@ -308,15 +322,20 @@ class Agent:
             A dict an episode, and the summary as the last.
 
         Raises:
-            InvalidOption for no episodes, and what `load` raises; TypeError or ValueError for a seed that is none.
+            InvalidOption for no episodes, an environment with other buttons or other rules than these, and what `load` raises;
+            UnknownEnvironment for an id that is none; TypeError or ValueError for a seed that is none.
         """
         asked = {name: bool(self._how[name] if value is None else value) for name, value in (("best", best), ("greedy", greedy))}
         if asked != self._how:
-            return Agent.load(self.run, **asked).evaluate(episodes, seed)
+            return Agent.load(self.run, **asked).evaluate(episodes, seed, env_id=env_id, rules=rules)
         if not is_number(episodes) or int(episodes) < 1:
             raise InvalidOption(f"episodes cannot be {episodes!r}; it must be 1 or more")
         first = check_seed(seed)
-        rows: list[dict[str, Any]] = json.loads(self._trained.evaluate([(first + number) % 2**64 for number in range(int(episodes))]))
+        if rules is not None and env_id is None and "," in self.config["env"]["id"]:
+            raise InvalidOption(f"rules={rules!r}: the agent is of several tasks; name one of them as env_id")
+        elsewhere = None if env_id is None else bare(spec(cast("str", env_id)).id)
+        seeds = [(first + number) % 2**64 for number in range(int(episodes))]
+        rows: list[dict[str, Any]] = json.loads(self._trained.evaluate(seeds, elsewhere, rules))
         return rows
 
     def report(self, out: str | os.PathLike[str]) -> Path:

@@ -83,6 +83,21 @@ def test_agents_of_the_zoo_and_of_files_are_agents(monkeypatch: pytest.MonkeyPat
     assert [json.loads(line) for line in done.stdout.splitlines()] == by_name.evaluate(1, seed=3)
     with pytest.raises(hasard_rs.InvalidOption, match="zoo:RemedyRushLevel1"):
         hasard_rs.Agent.load("zoo:Nobody")
+    # Under other rules, and in another environment: as the program plays it.
+    words = [sys.executable, "-m", "hasard_rs.cli", "eval", "zoo:RemedyRushLevel1", "--episodes", "2", "--seed", "3", "--rules", "tables", "--json"]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert [json.loads(line) for line in done.stdout.splitlines()] == by_name.evaluate(2, seed=3, rules="tables") != by_name.evaluate(2, seed=3)
+    words[3:5] = ["rollout", "RemedyRushLevel3-v0", "--policy", "zoo:RemedyRushLevel1"]
+    done = subprocess.run(words, capture_output=True, text=True)
+    played = by_name.evaluate(2, seed=3, rules="tables", env_id="hasard/RemedyRushLevel3-v0")
+    assert [json.loads(line) for line in done.stdout.splitlines()][:2] == played[:2]
+    assert played[2]["summary"]["safety_budget"] == hasard_rs.spec("RemedyRushLevel3-v0").safety_budget
+    with pytest.raises(hasard_rs.InvalidOption, match="buttons are others"):
+        by_name.evaluate(1, env_id="CollateralDamageLevel1-v0")
+    with pytest.raises(hasard_rs.UnknownEnvironment, match="RemedyRushLevel3"):
+        by_name.evaluate(1, env_id="RemedyRushLevel33-v0")
+    with pytest.raises(hasard_rs.InvalidOption, match="paper or released or tables"):
+        by_name.evaluate(1, rules="none")
     with pytest.raises(hasard_rs.InvalidOption, match="without a run directory"):
         by_name.report("nowhere")
 

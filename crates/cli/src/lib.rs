@@ -28,8 +28,8 @@ mod zoo;
 use args::{Cli, Command};
 use clap::{ArgMatches, FromArgMatches};
 use failure::Failure;
-use hasard_envs::EnvOptions;
-use hasard_learn::config::EnvConfig;
+use hasard_envs::{EnvId, EnvOptions, VecEnv};
+use hasard_learn::config::{Constraint, EnvConfig};
 use hasard_learn::runs::agent::{Choice, TrainedPolicy};
 use hasard_learn::runs::evaluate::{Evaluation, play};
 use hasard_learn::runs::run_directory::episode_row;
@@ -146,7 +146,8 @@ pub fn agent_place(text: &Path) -> Result<PathBuf, String> {
 }
 
 /// Plays an episode of each seed with a policy and gives what `hasard eval --json` prints: a row an
-/// episode, then the summary. `interrupted` is asked between some episodes and others.
+/// episode, then the summary. `elsewhere` is another environment than the policy's own, whose own
+/// budget it is held to. `interrupted` is asked between some episodes and others.
 ///
 /// # Errors
 /// One line of what went wrong; `None` where it was interrupted.
@@ -154,12 +155,21 @@ pub fn evaluate(
     policy: &TrainedPolicy,
     choice: Choice,
     options: &EnvOptions,
+    elsewhere: Option<EnvId>,
     seeds: &[u64],
     mut interrupted: impl FnMut() -> bool,
 ) -> Result<Vec<Value>, Option<String>> {
     let threads = settings::cores();
     let (config, mut rows, mut all) = (policy.config(), Vec::new(), Vec::new());
-    let make = |env: &EnvConfig, worlds| env.worlds(options, worlds);
+    let id = elsewhere.map_or_else(|| config.env.id.clone(), |id| id.to_string());
+    let make = |env: &EnvConfig, worlds| match elsewhere {
+        Some(_) => VecEnv::new(&id, options, worlds),
+        None => env.worlds(options, worlds),
+    };
+    let constraints = elsewhere.map_or_else(
+        || config.constraints.clone(),
+        |id| vec![Constraint { term: None, budget: id.safety_budget(options.rules, options.hard) }],
+    );
     let tasks = config.env.tasks().len();
     for some in seeds.chunks((8 * threads).next_multiple_of(tasks)) {
         if interrupted() {
@@ -168,14 +178,13 @@ pub fn evaluate(
         for episode in
             play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))?
         {
-            let mut row = episode_row(&config.env.id, all.len() as u64, &episode);
+            let mut row = episode_row(&id, all.len() as u64, &episode);
             episode_lines::Under::of(options).say(&mut row);
             rows.push(row);
             all.push(episode);
         }
     }
-    let summary =
-        Evaluation::of(&all, &config.constraints).map_err(|error| Some(error.to_string()))?;
+    let summary = Evaluation::of(&all, &constraints).map_err(|error| Some(error.to_string()))?;
     rows.push(episode_lines::summary_row(&summary, &all));
     Ok(rows)
 }

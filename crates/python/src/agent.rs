@@ -1,9 +1,11 @@
 //! A trained agent for Python: arrays in, arrays out, and what it carries from step to step in the
 //! caller's hands.
 
-use crate::errors::INVALID_OPTION;
+use crate::arguments::choice;
+use crate::errors::{INVALID_OPTION, raise};
 use crate::pool::array;
-use hasard_envs::{Env, EnvOptions};
+use crate::registry::environment;
+use hasard_envs::{Env, EnvId, EnvOptions, RuleSet};
 use hasard_learn::error::LearnError;
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{TrainedPolicy, run_config};
@@ -67,6 +69,36 @@ impl TrainedAgent {
             .try_readonly()
             .map_err(|error| PyTypeError::new_err(format!("observations: {error}")))?;
         Ok(readable.as_array().iter().copied().collect())
+    }
+
+    /// Another environment, other rules or both, as the agent sees them and with its own buttons.
+    fn elsewhere(
+        &self,
+        py: Python<'_>,
+        env_id: Option<&str>,
+        rules: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<(Option<EnvId>, EnvOptions)> {
+        let own = &self.options;
+        let id = environment(env_id.unwrap_or(&self.env_id)).map_err(|error| raise(py, &error))?;
+        let rules = match rules {
+            Some(given) => {
+                choice("rules", given, &RuleSet::ALL.map(|rules| (rules.name(), rules)))?
+            }
+            None => own.rules,
+        };
+        let scenario = env_id.map_or(own.scenario, |_| Some(id.scenario));
+        let actions_of = Some((own.rules, own.hard));
+        let options = EnvOptions { scenario, rules, actions_of, ..own.clone() };
+        let there = Env::new(&id.to_string(), &options).map_err(|error| raise(py, &error))?;
+        let space = there.action_space();
+        if space.sizes() != self.sizes || space.deltas.len() != self.deltas {
+            let of = &self.env_id;
+            let why = format!(
+                "an agent of {of} cannot act in {id}, whose buttons are others; choose an environment of its scenario"
+            );
+            return Err(INVALID_OPTION.error(py, why));
+        }
+        Ok((Some(id), options))
     }
 
     fn agent(&self) -> MutexGuard<'_, Trained> {
@@ -252,19 +284,30 @@ impl TrainedAgent {
         Ok((array(py, rows, &[lanes, width])?, AgentState { memory }))
     }
 
-    /// evaluate(seeds) -> str
+    /// evaluate(seeds, env_id=None, rules=None) -> str
     ///
     /// Plays an episode of each of the `seeds` (int) with the weights that were loaded, in worlds
-    /// as it was trained in.
+    /// as it was trained in, or in the environment `env_id` under the rule set `rules`.
     ///
     /// Returns:
     ///     A JSON list, of an object an episode and the summary, as `hasard eval --json` prints
     ///         them.
     ///
     /// Raises:
-    ///     InvalidOption for worlds that cannot be made; what a signal's handler raises, such as
-    ///         KeyboardInterrupt.
-    fn evaluate(&self, py: Python<'_>, seeds: Vec<u64>) -> PyResult<String> {
+    ///     UnknownEnvironment for no such `env_id`; InvalidOption for worlds that cannot be made or
+    ///         have other actions; what a signal's handler raises, such as KeyboardInterrupt.
+    #[pyo3(signature = (seeds, env_id=None, rules=None))]
+    fn evaluate(
+        &self,
+        py: Python<'_>,
+        seeds: Vec<u64>,
+        env_id: Option<&str>,
+        rules: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<String> {
+        let (elsewhere, options) = match (env_id, rules) {
+            (None, None) => (None, self.options.clone()),
+            _ => self.elsewhere(py, env_id, rules)?,
+        };
         let mut raised = None;
         let played = py.detach(|| {
             let policy = self.policy.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -275,7 +318,7 @@ impl TrainedAgent {
                     true
                 }
             };
-            hasard_cli::evaluate(&policy, self.choice, &self.options, &seeds, interrupted)
+            hasard_cli::evaluate(&policy, self.choice, &options, elsewhere, &seeds, interrupted)
         });
         match (played, raised) {
             (_, Some(error)) => Err(error),
