@@ -83,7 +83,10 @@ def scales_of(ppo, chance):
     """{environment: what random play and PPO return}, PPO over its seeds."""
     returns = {}
     for path in sorted(Path(ppo).rglob("selected.json")):
-        env = json.loads((path.parent / "config.json").read_text())["env"]["id"]
+        config = json.loads((path.parent / "config.json").read_text())
+        env, task = config["env"]["id"], config["env"]
+        if config["algorithm"] != "PPO" or task["rules"] != "paper" or task["hard"] or task["full_actions"]:
+            raise SystemExit(f"{path.parent}: the scale is PPO's under the rules `paper`; give a folder of such runs alone")
         returns.setdefault(env, []).append(json.loads(path.read_text())["last"]["episode_return"]["mean"])
     scales = {}
     for env, own in returns.items():

@@ -53,7 +53,7 @@ def begin(worlds: hasard_rs.Worlds, seed: int) -> hasard_rs.Batch:
     """Starts the episode of exactly this seed: saved lanes hold it after their head, the number of lanes and the stream."""
     worlds.reset(0)
     saved = bytearray(worlds.save())
-    at = saved.index(b"hslanes\x01") + 8 + 8 + 8
+    at = saved.index(b"hslanes\x02") + 8 + 8 + 8
     saved[at : at + 8] = struct.pack("<Q", seed)
     return worlds.load(bytes(saved))
 

@@ -160,7 +160,14 @@ fn an_episode_is_recorded_replayed_and_drawn() {
     outcome.cost += 1.0;
     file.set_outcome(outcome);
     file.write(&path).unwrap();
-    assert_eq!(folder.run("replay a.episode").status.code(), Some(1));
+    for line in
+        ["replay a.episode", "replay a.episode -o end.png", "record a.episode --size 64x48 -o b.gif"]
+    {
+        assert_eq!(folder.run(line).status.code(), Some(1), "{line}");
+    }
+    // A part of it is no other end.
+    folder.ok("record a.episode --size 64x48 --steps 3 -o b.gif");
+    folder.ok("replay a.episode --step 3 -o part.png");
 }
 
 #[test]

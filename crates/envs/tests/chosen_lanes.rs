@@ -306,3 +306,69 @@ fn statistics_come_with_every_step() {
     let plain = VecEnv::new("VolcanicVentureLevel1-v0", &env, VecOptions::default()).unwrap();
     assert!(plain.whole_batch().statistics.is_empty(), "only who asks for them pays for them");
 }
+
+/// Lanes of another level, or with another option that decides what happens, are no moment of these.
+#[test]
+fn lanes_saved_from_another_environment_are_refused() {
+    let size = FrameSize { width: 64, height: 48 };
+    let make = |id: &str, more: EnvOptions| {
+        let options = VecOptions { lanes: 2, ..VecOptions::default() };
+        VecEnv::new(id, &EnvOptions { size, ..more }, options).unwrap()
+    };
+    let plain = EnvOptions::default;
+    let mut worlds = make("RemedyRushLevel1-v0", plain());
+    let mut batch = worlds.whole_batch();
+    worlds.reset(&mut batch).unwrap();
+    let shown = batch.observations.to_vec();
+    for (id, options) in [
+        ("RemedyRushLevel2-v0", plain()),
+        ("VolcanicVentureLevel1-v0", plain()),
+        ("RemedyRushLevel1-v0", EnvOptions { rules: RuleSet::Tables, ..plain() }),
+        ("RemedyRushLevel1-v0", EnvOptions { hard: true, ..plain() }),
+        ("RemedyRushLevel1-v0", EnvOptions { frame_skip: 2, ..plain() }),
+    ] {
+        let mut other = make(id, options);
+        let bytes = LaneState::to_bytes(&other.save().unwrap());
+        let refused = worlds.restore(LaneState::from_bytes(&bytes).unwrap(), &mut batch);
+        assert!(matches!(refused, Err(EnvError::Saved { .. })), "{id}: {refused:?}");
+        assert_eq!(batch.observations[..], shown[..], "{id}");
+    }
+    let mut alike = make("RemedyRushLevel1-v0", plain());
+    worlds.restore(alike.save().unwrap(), &mut batch).unwrap();
+}
+
+/// A batch that is stepped at once plays what one plays that was reset first.
+#[test]
+fn lanes_that_were_never_reset_begin_their_first_episodes() {
+    let options = VecOptions { lanes: 3, seed: 11, ..VecOptions::default() };
+    let (mut reset, mut straight) = (make(options), make(options));
+    let (mut first, mut second) = (reset.whole_batch(), straight.whole_batch());
+    reset.reset(&mut first).unwrap();
+    for step in 0..5 {
+        act(&mut first, &reset, &[0, 1, 2], step);
+        act(&mut second, &straight, &[0, 1, 2], step);
+        reset.step(&mut first).unwrap();
+        straight.step(&mut second).unwrap();
+        assert_eq!(first.observations[..], second.observations[..]);
+    }
+    assert_eq!(reset.save().unwrap(), straight.save().unwrap());
+}
+
+/// A picture goes into a buffer of its size alone, of one frame or several.
+#[test]
+fn observations_need_buffers_of_their_size() {
+    let size = FrameSize { width: 64, height: 48 };
+    for frame_stack in [1, 2] {
+        let options = EnvOptions { size, frame_stack, ..EnvOptions::default() };
+        let mut env = Env::new("RemedyRushLevel1-v0", &options).unwrap();
+        let length: usize = env.observation_shape().iter().product();
+        env.observe(&mut vec![0; length]);
+        for wrong in [0, length / 2, length - 1, length + 1, 2 * length] {
+            let drawn = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+                env.observe(&mut vec![0; wrong]);
+            }));
+            assert!(drawn.is_err(), "{frame_stack} frames in {wrong} bytes");
+        }
+    }
+    assert!(matches!(VecEnv::of_envs(&[], VecOptions::default()), Err(EnvError::Option { .. })));
+}

@@ -1,7 +1,8 @@
 //! A trained agent plays 20 episodes, and is judged by its budget: `cargo run --release -p
 //! hasard-learn --example evaluate_agent -- zoo/RemedyRushLevel1.agent`, or a run directory.
 
-use hasard_envs::{Env, VecEnv};
+use hasard_envs::Env;
+use hasard_learn::config::EnvConfig;
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Choice, TrainedPolicy, Which, run_config};
 use hasard_learn::runs::evaluate::{Evaluation, play};
@@ -21,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         action,
         &mut warn,
     )?;
-    let make_envs = |_: &_, lanes| VecEnv::new(&config.env.id, &options, lanes);
+    let make_envs = |env: &EnvConfig, lanes| env.worlds(&options, lanes);
     let seeds: Vec<u64> = (1_000_000..1_000_020).collect();
     let episodes = play(&policy, Choice::Sampled, &make_envs, &seeds, 2)?;
     let judged = Evaluation::of(&episodes, &config.constraints)?;

@@ -1,7 +1,6 @@
 //! Trains an agent from a program of one's own: `cargo run --release --example train_agent --
 //! PPOLag quick 200000 /tmp/run`.
 
-use hasard_envs::VecEnv;
 use hasard_learn::config::{EnvConfig, TrainConfig};
 use hasard_learn::runs::progress_bar::line;
 use hasard_learn::runs::trainer::{Hooks, Start, train};
@@ -23,7 +22,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let summary = train(
         Start::Fresh(config),
         directory.as_ref(),
-        &|_, lanes| VecEnv::new(id, &options, lanes),
+        // The task of the lesson, where there is a curriculum.
+        &|env, lanes| env.worlds(&options, lanes),
         &mut Hooks {
             stop: &stop,
             report: &mut |report| println!("{}", line(report)),

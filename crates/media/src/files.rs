@@ -99,6 +99,15 @@ impl WholeFile {
         })
     }
 
+    /// How many bytes it has so far.
+    ///
+    /// # Errors
+    /// When they cannot be written.
+    pub fn written(&mut self) -> Result<u64, MediaError> {
+        let count = self.flush().and_then(|()| std::fs::metadata(&self.temporary));
+        count.map(|data| data.len()).map_err(|e| MediaError::io(&self.path, "write", e))
+    }
+
     /// Puts the file in its place.
     ///
     /// # Errors

@@ -46,13 +46,12 @@ pub fn write_within(
         for picture in pictures {
             writer.push(picture, seconds)?;
         }
-        writer.finish()?;
-        let bytes = std::fs::metadata(path).map_err(|e| MediaError::io(path, "read", e))?.len();
-        if bytes <= most_bytes {
+        let mut file = writer.finished()?;
+        if file.written()? <= most_bytes {
+            file.finish()?;
             return Ok(loss);
         }
     }
-    std::fs::remove_file(path).map_err(|e| MediaError::io(path, "remove", e))?;
     Err(MediaError::Size(format!(
         "{}: no animation of {} pictures of {width}x{height} fits into {most_bytes} bytes; make it smaller or shorter",
         path.display(),
@@ -127,7 +126,12 @@ impl GifWriter {
     ///
     /// # Errors
     /// When there was no frame or the file cannot be written.
-    pub fn finish(mut self) -> Result<(), MediaError> {
+    pub fn finish(self) -> Result<(), MediaError> {
+        self.finished()?.finish()
+    }
+
+    /// The whole animation, in a file that is not in its place yet.
+    fn finished(mut self) -> Result<WholeFile, MediaError> {
         if self.waiting.is_none() {
             return Err(MediaError::Size(format!(
                 "{}: an animation needs at least one frame",
@@ -136,11 +140,9 @@ impl GifWriter {
         }
         let ends = self.ends;
         self.store_waiting(ends)?;
-        let file = self
-            .encoder
+        self.encoder
             .into_inner()
-            .map_err(|e| MediaError::io(&self.path, "write", std::io::Error::other(e)))?;
-        file.finish()
+            .map_err(|e| MediaError::io(&self.path, "write", std::io::Error::other(e)))
     }
 
     /// Writes the waiting frame, which ends at `until`.
@@ -324,9 +326,12 @@ mod tests {
                 assert!(off <= u32::from(loss).pow(2), "{seen:?} for {wanted:?}");
             }
         }
+        // What does not fit leaves what was there.
+        let before = std::fs::read(&path).unwrap();
         let error = write_within(&path, &pictures, 0.1, 100).unwrap_err().to_string();
         assert!(error.contains("fits into 100 bytes"), "{error}");
-        assert!(!path.exists());
+        assert_eq!(std::fs::read(&path).unwrap(), before);
+        std::fs::remove_file(&path).unwrap();
         assert!(write_within(&path, &[], 0.1, 100).is_err());
     }
 

@@ -47,7 +47,7 @@ impl VideoWriter {
     ) -> Result<VideoWriter, MediaError> {
         if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
             return Err(MediaError::Size(format!(
-                "a video cannot be {width}x{height}; its sides are 1 to {MAX_SIDE}"
+                "a video cannot be {width}x{height}; its sides are 1 to {MAX_SIDE}: give a smaller size, or fewer views beside it"
             )));
         }
         let (frames, seconds) = frames_per_second;

@@ -324,6 +324,9 @@ impl Replay {
                 episode.cost
             ));
         }
+        if (episode.terminated, episode.truncated) != (outcome.terminated, outcome.truncated) {
+            return Some(format!("{name}: ends in another way than was recorded"));
+        }
         (outcome.state_hash.is_some_and(|recorded| recorded != hash)).then(|| {
             format!(
                 "{name}: ends in another state than version {} recorded",

@@ -140,6 +140,9 @@ fn a_replay_that_differs_says_so() {
         replay.difference()
     };
     assert!(play(&file).unwrap().starts_with("a.episode: ends in another state"));
+    outcome.terminated = !outcome.terminated;
+    file.set_outcome(outcome.clone());
+    assert!(play(&file).unwrap().contains("ends in another way"));
     outcome.episode_return += 1.0;
     file.set_outcome(outcome);
     assert!(play(&file).unwrap().contains("was recorded by version"));

@@ -106,7 +106,8 @@ pub fn run(args: &RecordArgs) -> Outcome {
             // Of a word that is like no id the nearest says nothing.
             let remedy = match error {
                 EnvError::UnknownId { nearest, .. }
-                    if edit_distance(&id, &nearest) <= 1 + nearest.len() / 3 =>
+                    if !nearest.is_empty()
+                        && edit_distance(&id, &nearest) <= 1 + nearest.len() / 3 =>
                 {
                     format!("did you mean {nearest}?")
                 }
@@ -168,7 +169,14 @@ fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions)
     }
     let mut replay = open(file, looks)?;
     let film = play_out(&mut replay, &args.out, looks.size, &args.film, args.steps)?;
-    finish(replay.stage().env(), args.json, Some(&args.out), Some(film))
+    finish(replay.stage().env(), args.json, Some(&args.out), Some(film))?;
+    compared(&replay)
+}
+
+/// An error where a replay came to its end and to another than the recording's.
+fn compared(replay: &Replay) -> Outcome {
+    let difference = replay.over().then(|| replay.difference()).flatten();
+    difference.map_or(Ok(()), |difference| Err(Failure::Negative(difference)))
 }
 
 /// Runs `hasard replay`.
@@ -203,7 +211,8 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
             let kinds = settings::views(View::Rgb, &args.film.beside);
             let mut views = Views::new(replay.stage(), size, &kinds).map_err(Failure::bad)?;
             hasard_media::png::write(&views.draw(replay.stage()), out).map_err(Failure::bad)?;
-            return finish(replay.stage().env(), args.json, Some(out), None);
+            finish(replay.stage().env(), args.json, Some(out), None)?;
+            return compared(&replay);
         }
         (Some(out), _) => {
             let film = play_out(&mut replay, out, size, &args.film, None)?;
@@ -214,7 +223,7 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
             finish(replay.stage().env(), args.json, None, None)?;
         }
     }
-    replay.difference().map_or(Ok(()), |difference| Err(Failure::Negative(difference)))
+    compared(&replay)
 }
 
 fn open(file: &Path, looks: &EnvOptions) -> Result<Replay, Failure> {

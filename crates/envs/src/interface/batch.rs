@@ -14,8 +14,8 @@ pub struct Batch {
     pub actions: Vec<u8>,
     /// In: continuous sub-actions, `[lanes, deltas]`.
     pub deltas: Vec<f32>,
-    /// Out: observations, `[lanes, ..observation shape]`, 0..=255. After an episode's end, the
-    /// first of the next one.
+    /// Out: observations, `[lanes, ..observation shape]`, 0..=255. After an episode's end,
+    /// under [`crate::Autoreset::SameStep`] the first of the next one, else the episode's last.
     pub observations: Buffer<u8>,
     /// Out: reward of the step, `[lanes]`.
     pub rewards: Buffer<f32>,
@@ -29,14 +29,15 @@ pub struct Batch {
     /// Out: where the player stands at the end of the step, before any reset, in map units,
     /// `[lanes]`. For heatmaps.
     pub positions: Buffer<[i32; 2]>,
-    /// Out: the episode ended by death, harm or goal, `[lanes]`.
+    /// Out: the episode ended by death, the hard constraint or its goal, `[lanes]`.
     pub terminated: Buffer<bool>,
     /// Out: the episode ended by time-out, `[lanes]`.
     pub truncated: Buffer<bool>,
     /// Out: what is shown beside observations, `[lanes, bytes]`; empty unless
     /// [`crate::VecOptions::insight`] asks for something.
     pub insight: Buffer<u8>,
-    /// Out: the lanes of this batch whose true last observation follows, ascending.
+    /// Out: the lanes of this batch, counted within it, whose true last observation follows,
+    /// ascending. Of which ends those are says [`crate::VecOptions::final_observations`].
     pub final_lanes: Vec<usize>,
     /// Out: the true last observations of those lanes, `[final lanes, ..observation shape]`: one
     /// array.
@@ -49,7 +50,8 @@ pub struct Batch {
     /// Out: where each lane's happenings begin, and after them where the last one's end, `[lanes +
     /// 1]`.
     pub happening_offsets: Vec<usize>,
-    /// Out: the episodes that ended in this step, in lane order.
+    /// Out: the episodes that ended in this step, in lane order. Their lanes are counted over all
+    /// groups: the first of a group's is the start of [`crate::VecEnv::group_lanes`].
     pub episodes: Vec<Episode>,
 }
 
@@ -132,7 +134,7 @@ pub struct Episode {
     pub costs: Vec<EpisodeCost>,
     /// Length in policy steps.
     pub length: u32,
-    /// Ended by death, harm or goal.
+    /// Ended by death, the hard constraint or its goal.
     pub terminated: bool,
     /// Ended by time-out.
     pub truncated: bool,

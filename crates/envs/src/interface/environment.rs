@@ -20,10 +20,16 @@ pub trait Environment: Send {
     /// The cost terms, in the order of [`step_costs`](Environment::step_costs).
     fn cost_terms(&self) -> &'static [CostTerm];
 
+    /// A number that two environments share only if the same seed and actions lead both to the
+    /// same states, so that what was saved from one can be restored in the other; 0 says nothing.
+    fn fingerprint(&self) -> u64 {
+        0
+    }
+
     /// Starts the episode of `seed`.
     fn reset(&mut self, seed: u64);
 
-    /// Advances by one policy step. After an episode's end nothing moves: reward and cost are 0,
+    /// Advances by one policy step. The caller has checked the action: [`ActionSpace::check`]. After an episode's end nothing moves: reward and cost are 0,
     /// the flags stay.
     fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step;
 

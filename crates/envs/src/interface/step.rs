@@ -7,7 +7,7 @@ pub struct Step {
     pub reward: f64,
     /// Cost, over all tics of the step: the sum of the counted cost terms.
     pub cost: f64,
-    /// The episode ended by death, harm or goal.
+    /// The episode ended by death, the hard constraint or its goal.
     pub terminated: bool,
     /// The episode ended by time-out.
     pub truncated: bool,

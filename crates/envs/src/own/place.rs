@@ -66,7 +66,7 @@ pub fn changed(scenario: Scenario, began: &str, keeper: &str) -> Option<String> 
 }
 
 /// FNV-1a, 64 bits.
-pub(super) fn hash(text: &str) -> u64 {
+pub(crate) fn hash(text: &str) -> u64 {
     text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
     })

@@ -1,6 +1,7 @@
 //! The registry: scenarios, levels and the ids that name them.
 
 use crate::error::{EnvError, excerpt};
+use crate::scenarios::common::outcome::MOST_TERMS;
 use crate::scenarios::common::rule_set::RuleSet;
 use crate::scenarios::common::scenario::Scenario;
 use crate::scenarios::common::spec::{ScenarioSpec, Setting};
@@ -37,7 +38,8 @@ impl Scenario {
     /// again changes nothing.
     ///
     /// # Errors
-    /// If the name is one of the benchmark's, or no name; one line.
+    /// If the name is one of the benchmark's, or no name, or if the cost terms are more than
+    /// [`MOST_TERMS`] or two have one name; one line.
     pub fn register(spec: &'static ScenarioSpec) -> Result<Scenario, EnvError> {
         let refuse = |allowed: &str| EnvError::Option {
             option: "a scenario's name",
@@ -51,6 +53,17 @@ impl Scenario {
         }
         if Scenario::ALL.iter().any(|own| own.name.eq_ignore_ascii_case(spec.name)) {
             return Err(refuse("another than those of the benchmark"));
+        }
+        let terms = spec.cost_terms;
+        let twice = |at: usize| terms[..at].iter().any(|before| before.name == terms[at].name);
+        let found = if terms.len() > MOST_TERMS {
+            Some(format!("{} terms", terms.len()))
+        } else {
+            (0..terms.len()).find(|&at| twice(at)).map(|at| format!("{} twice", terms[at].name))
+        };
+        if let Some(given) = found {
+            let allowed = format!("up to {MOST_TERMS}, each with a name of its own");
+            return Err(EnvError::Option { option: "a scenario's cost terms", given, allowed });
         }
         let scenario = Scenario::of(spec);
         let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);

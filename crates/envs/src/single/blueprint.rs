@@ -90,6 +90,13 @@ impl Blueprint {
             }
         };
         let (start_tic, end_tic) = facts::clock(id, options.rules, options.hard);
+        if start_tic >= end_tic {
+            return Err(EnvError::Option {
+                option: "a task's clock",
+                given: format!("{start_tic} to {end_tic}"),
+                allowed: "a first tic before the last".to_string(),
+            });
+        }
         let (whose_rules, whose_constraint) = options.actions_of();
         let space = ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions);
         // Its names may come to be those of another file: these worlds stay of this one.

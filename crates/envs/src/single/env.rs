@@ -9,6 +9,7 @@ use crate::interface::happening::Happening;
 use crate::interface::insight::Insight;
 use crate::interface::step::{CostTerm, Step};
 use crate::options::EnvOptions;
+use crate::own::hash;
 use crate::registry::scenario::EnvId;
 use crate::scenarios::common::outcome::MOST_TERMS;
 use crate::single::blueprint::{Blueprint, view};
@@ -253,7 +254,7 @@ impl Env {
         Ok(renderer)
     }
 
-    /// The whole map from above, in a picture of `width` by `height` pixels.
+    /// The whole map from above, in a picture of `width` by `height` pixels, 16 at least either way.
     #[must_use]
     pub fn top_down(&self, width: usize, height: usize) -> TopDown {
         TopDown::new(
@@ -380,6 +381,22 @@ impl Environment for Env {
 
     fn cost_terms(&self) -> &'static [CostTerm] {
         Env::cost_terms(self)
+    }
+
+    fn fingerprint(&self) -> u64 {
+        let (id, options) = (self.id(), &self.blueprint.options);
+        hash(&format!(
+            "{id} {} {} {} {} {} {} {:?} {:?} {:?}",
+            options.rules.name(),
+            options.early_creatures,
+            options.test_seeds,
+            options.hard,
+            options.full_actions,
+            options.frame_skip,
+            options.max_episode_steps,
+            self.blueprint.space.sizes(),
+            id.scenario.file.map(|file| file.hash),
+        ))
     }
 
     fn reset(&mut self, seed: u64) {

@@ -109,6 +109,8 @@ impl Eye {
 
     /// Writes the observation.
     pub fn observe(&mut self, world: &World, out: &mut [u8]) {
+        let length = self.shape().iter().product::<usize>();
+        assert_eq!(out.len(), length, "an observation of {length} bytes is needed");
         if self.stack == 1 {
             self.draw(world, out, Insight::default(), &mut []);
             return;

@@ -12,6 +12,8 @@ pub(super) struct Shape {
     pub cost_terms: &'static [CostTerm],
     pub statistics: Vec<&'static str>,
     pub options: VecOptions,
+    /// Fingerprint of each lane's environment.
+    pub envs: Vec<u64>,
 }
 
 impl Shape {
@@ -79,6 +81,14 @@ impl Shape {
 
     pub(super) fn check_states(&self, states: &[LaneState]) -> Result<(), EnvError> {
         self.one_of_each_lane("the number of saved lanes", states.len())?;
+        for (lane, (state, &env)) in states.iter().zip(&self.envs).enumerate() {
+            if state.env != 0 && env != 0 && state.env != env {
+                let why = format!(
+                    "lane {lane} was saved from another environment, or from one made with other options; restore it in one made alike"
+                );
+                return Err(EnvError::Saved { why });
+            }
+        }
         states
             .iter()
             .enumerate()

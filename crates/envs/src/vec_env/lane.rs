@@ -192,6 +192,8 @@ pub(super) struct Lane {
     seed: u64,
     actions: Vec<u8>,
     deltas: Vec<f32>,
+    /// Whether an episode of the lane has begun.
+    begun: bool,
     /// How the running episode ended, where the next one does not follow at once.
     ended: Option<Step>,
     /// Room for statistics on their way.
@@ -212,6 +214,7 @@ impl Lane {
             insight: options.insight,
             seeds,
             seed: 0,
+            begun: false,
             actions,
             deltas,
             ended: None,
@@ -232,6 +235,7 @@ impl Lane {
 
     fn start(&mut self, seed: u64) {
         self.seed = seed;
+        self.begun = true;
         self.actions.clear();
         self.deltas.clear();
         self.ended = None;
@@ -252,7 +256,13 @@ impl Lane {
     /// Where the lane is.
     pub fn state(&self) -> LaneState {
         let (actions, deltas) = (self.actions.clone(), self.deltas.clone());
-        LaneState { seeds: self.seeds.state(), seed: self.seed, actions, deltas }
+        LaneState {
+            seeds: self.seeds.state(),
+            seed: self.seed,
+            env: self.env.fingerprint(),
+            actions,
+            deltas,
+        }
     }
 
     /// Resets the lane in the given way and shows where it is then.
@@ -297,7 +307,7 @@ impl Lane {
         }
     }
 
-    /// Steps the lane by its action. `index` is its number within the batch.
+    /// Steps the lane by its action, in its first episode if none has begun. `index` is its number within the batch.
     pub fn step(
         &mut self,
         index: usize,
@@ -305,6 +315,9 @@ impl Lane {
         mut slices: LaneSlices,
         outbox: &mut Outbox,
     ) {
+        if !self.begun {
+            self.next_episode();
+        }
         let (step, moved) = match (self.ended, manner.autoreset) {
             (Some(_), Autoreset::NextStep) => {
                 self.next_episode();

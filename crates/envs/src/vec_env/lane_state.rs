@@ -9,27 +9,31 @@ pub struct LaneState {
     pub seeds: u64,
     /// Seed of the running episode.
     pub seed: u64,
+    /// [`crate::Environment::fingerprint`] of the environment that it was saved from; 0 where that
+    /// is not known.
+    pub env: u64,
     /// Categorical sub-actions of the episode so far.
     pub actions: Vec<u8>,
     /// Continuous sub-actions of the episode so far.
     pub deltas: Vec<f32>,
 }
 
-/// What saved lanes begin with: a name, and the version of what follows.
-const HEAD: [u8; 8] = *b"hslanes\x01";
+/// What saved lanes begin with: a name, and the version of what follows. The first version did not
+/// say of which environment they are.
+const HEAD: [u8; 8] = *b"hslanes\x02";
+const FORMER: [u8; 8] = *b"hslanes\x01";
 
 impl LaneState {
     /// Lanes as bytes, the same on every platform: a head with the format's version, the number of
-    /// lanes, then each lane's two seeds, the numbers of its sub-actions and the sub-actions;
+    /// lanes, then each lane's two seeds, its environment's fingerprint, the numbers of its sub-actions and the sub-actions;
     /// little-endian.
     #[must_use]
     pub fn to_bytes(lanes: &[LaneState]) -> Vec<u8> {
         let mut bytes = HEAD.to_vec();
         bytes.extend((lanes.len() as u64).to_le_bytes());
         for lane in lanes {
-            for number in
-                [lane.seeds, lane.seed, lane.actions.len() as u64, lane.deltas.len() as u64]
-            {
+            let lengths = [lane.actions.len() as u64, lane.deltas.len() as u64];
+            for number in [lane.seeds, lane.seed, lane.env].into_iter().chain(lengths) {
                 bytes.extend(number.to_le_bytes());
             }
             bytes.extend(&lane.actions);
@@ -45,12 +49,13 @@ impl LaneState {
         if head[..7] != HEAD[..7] {
             return Err(spoiled("they do not begin as saved lanes do"));
         }
-        if head != HEAD {
+        if head != HEAD && head != FORMER {
             return Err(spoiled(
                 "another version wrote them; load them with that version of hasard",
             ));
         }
         let lanes = number(&mut rest)?;
+        let former = head == FORMER;
         // A lane takes 32 bytes at least: no list longer than the bytes can fill is ever made.
         if lanes > rest.len() as u64 / 32 {
             return Err(spoiled("they end early"));
@@ -58,6 +63,7 @@ impl LaneState {
         let mut states = Vec::with_capacity(lanes as usize);
         for _ in 0..lanes {
             let [seeds, seed] = [number(&mut rest)?, number(&mut rest)?];
+            let env = if former { 0 } else { number(&mut rest)? };
             let [actions, deltas] = [number(&mut rest)?, number(&mut rest)?]
                 .map(|count| usize::try_from(count).unwrap_or(usize::MAX));
             let actions = cut(&mut rest, actions)?.to_vec();
@@ -66,7 +72,7 @@ impl LaneState {
                 .chunks_exact(4)
                 .map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]))
                 .collect();
-            states.push(LaneState { seeds, seed, actions, deltas });
+            states.push(LaneState { seeds, seed, env, actions, deltas });
         }
         if rest.is_empty() {
             Ok(states)
@@ -139,6 +145,7 @@ mod tests {
         let lane = |seed: u64| LaneState {
             seeds: !seed,
             seed,
+            env: seed ^ 5,
             actions: vec![1, 2, 3, seed as u8],
             deltas: vec![0.5, -1.0],
         };
@@ -149,6 +156,18 @@ mod tests {
     fn bytes_read_are_what_was_written() {
         assert_eq!(LaneState::from_bytes(&LaneState::to_bytes(&lanes())), Ok(lanes()));
         assert_eq!(LaneState::from_bytes(&LaneState::to_bytes(&[])), Ok(vec![]));
+    }
+
+    /// Of the version that did not name environments: the seeds of the one lane, and its action.
+    #[test]
+    fn lanes_of_the_former_version_are_read() {
+        let mut bytes = b"hslanes\x01".to_vec();
+        for number in [1_u64, 7, 9, 1, 0] {
+            bytes.extend(number.to_le_bytes());
+        }
+        bytes.push(2);
+        let lane = LaneState { seeds: 7, seed: 9, env: 0, actions: vec![2], deltas: vec![] };
+        assert_eq!(LaneState::from_bytes(&bytes), Ok(vec![lane]));
     }
 
     #[test]
@@ -163,8 +182,8 @@ mod tests {
             (0, "do not begin"),
             (7, "version"),
             (15, "end early"),
-            (39, "end early"),
             (47, "end early"),
+            (55, "end early"),
         ] {
             let mut spoiled = bytes.clone();
             spoiled[at] = 0xff;

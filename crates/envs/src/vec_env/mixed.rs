@@ -58,8 +58,18 @@ impl Mixture {
     /// The mixture of some environments, all made with the same options.
     ///
     /// # Errors
-    /// Names two tasks that use one name for a cost term that counts in one of them alone.
+    /// Names two tasks that use one name for a cost term that counts in one of them alone; an option
+    /// in which they differ; or says that there are none.
     pub fn of(envs: &[Env]) -> Result<Mixture, EnvError> {
+        let Some(first) = envs.first() else {
+            let (given, allowed) = ("0".to_string(), "1 or more".to_string());
+            return Err(EnvError::Option { option: "the number of tasks", given, allowed });
+        };
+        for (lane, env) in envs.iter().enumerate() {
+            if let Some(what) = first.options().difference(env.options()) {
+                return Err(EnvError::Unlike { lane, what });
+            }
+        }
         let space = ActionSpace::joined(envs.iter().map(|env| env.action_space().clone()));
         let ids: Vec<EnvId> = envs.iter().map(Env::id).collect();
         let terms = Mixture::cost_terms(&ids)?;
@@ -136,7 +146,12 @@ impl Mixture {
 
 /// The environments of ids joined by commas: one, or those of a mixture.
 pub(super) fn environments(ids: &str, options: &EnvOptions) -> Result<Vec<Env>, EnvError> {
-    ids.split(',').map(|id| Env::new(id.trim(), options)).collect()
+    let mut options = options.clone();
+    if ids.contains(',') {
+        // The batch lays the tasks' own spaces out together.
+        options.together = None;
+    }
+    ids.split(',').map(|id| Env::new(id.trim(), &options)).collect()
 }
 
 /// The sub-action of a space that has a group's buttons, and which of the group's choices each of
@@ -239,6 +254,10 @@ impl Environment for MixedLane {
 
     fn cost_terms(&self) -> &'static [CostTerm] {
         self.part.terms
+    }
+
+    fn fingerprint(&self) -> u64 {
+        self.env.fingerprint()
     }
 
     fn reset(&mut self, seed: u64) {

@@ -20,7 +20,8 @@ use std::sync::{Arc, Mutex};
 /// Either all lanes step together ([`reset`](VecEnv::reset), [`step`](VecEnv::step)), or each group
 /// by itself ([`send`](VecEnv::send), [`recv`](VecEnv::recv)): then a policy works on one group
 /// while the others step. A lane's episodes depend on the batch's seed and the lane's number alone;
-/// the number of threads, the batch's width and the way of stepping change nothing.
+/// the number of threads, the batch's width and the way of stepping change nothing. A lane that is
+/// stepped before its first reset begins its first episode with that step.
 ///
 /// ```
 /// use hasard_envs::{EnvOptions, VecEnv, VecOptions};
@@ -141,6 +142,7 @@ impl VecEnv {
             cost_terms: env.cost_terms(),
             statistics: env.stat_names(),
             options,
+            envs: lanes.iter().map(|lane| lane.env().fingerprint()).collect(),
         };
         let extent = env.extent();
         let slots = || 0..=options.groups;
@@ -327,7 +329,8 @@ impl VecEnv {
     }
 
     /// Brings every lane to a saved state, by repeating its episode so far, and shows it as after a
-    /// step that brought nothing.
+    /// step that brought nothing. What was saved from another environment, or from one made with
+    /// other options, is refused.
     pub fn restore(&mut self, states: Vec<LaneState>, batch: &mut Batch) -> Result<(), EnvError> {
         self.shape.check_states(&states)?;
         self.exchange(batch, Job::Restore(Arc::new(states)))

@@ -310,6 +310,9 @@ impl Agent {
     }
 
     /// Starts the episode of `seed` in a lane.
+    ///
+    /// # Panics
+    /// If there is no such lane.
     pub fn reset(&mut self, lane: usize, seed: u64) {
         self.safety[lane] = 1.0;
         self.episodes[lane] = (seed, 0);
@@ -361,8 +364,17 @@ impl Agent {
     /// The network's output rows, given the observations of all lanes one after the other: logits
     /// and parameters of the actions, then the critics' values. The agent has then seen these
     /// observations.
+    ///
+    /// # Panics
+    /// If they are not as many bytes as the lanes' observations have.
     pub fn rows(&mut self, observations: &[u8]) -> &[f32] {
         let lanes = self.safety.len();
+        let bytes = lanes * self.shape.networks.first().map_or(0, |one| one.image.size());
+        assert_eq!(
+            observations.len(),
+            bytes,
+            "the observations of {lanes} lanes are {bytes} bytes"
+        );
         let extra: Vec<f32> = match self.shape.extra_inputs() {
             0 => Vec::new(),
             _ => self.safety.iter().map(|&safety| seen(safety)).collect(),
@@ -383,6 +395,9 @@ impl Agent {
     }
 
     /// What to do in each lane, given the observations of all lanes one after the other.
+    ///
+    /// # Panics
+    /// As [`Agent::rows`].
     pub fn act(&mut self, observations: &[u8]) -> Vec<Action> {
         self.rows(observations);
         let width = self.shape.outputs();
@@ -405,6 +420,9 @@ impl Agent {
     }
 
     /// What the agent made of the moment of its last action in a lane.
+    ///
+    /// # Panics
+    /// If there is no such lane, or it has not acted yet.
     #[must_use]
     pub fn thought(&self, lane: usize) -> Thought {
         let width = self.shape.outputs();
@@ -424,6 +442,9 @@ impl Agent {
 
     /// What each critic of a cost expected in a lane at its last action, in the normalised units of
     /// training.
+    ///
+    /// # Panics
+    /// If there is no such lane, or it has not acted yet.
     #[must_use]
     pub fn cost_values(&self, lane: usize) -> &[f32] {
         let width = self.shape.outputs();
@@ -440,6 +461,9 @@ impl Agent {
 
     /// Notes what a step cost in a lane, in all and by cost terms; agents that watch their budget
     /// need it, and watch what they watched while they learned.
+    ///
+    /// # Panics
+    /// If there is no such lane.
     pub fn observe_cost(&mut self, lane: usize, cost: f64, terms: &[f64]) {
         let watched = self.watched.and_then(|term| terms.get(term).copied()).unwrap_or(cost);
         (_, self.safety[lane]) = self.shaping.step(self.safety[lane], 0.0, watched as f32);

@@ -88,7 +88,16 @@ pub fn comparable(config: &Config) -> bool {
 /// frames.
 fn experiment(config: &Config) -> Option<(&'static [&'static str], String)> {
     let option = |key: &str| config.options.get(key).map(String::as_str);
-    let varied = ["safety_budget", "observation", "frame_stack", "frame_skip", "constraints"];
+    let varied = [
+        "safety_budget",
+        "observation",
+        "frame_stack",
+        "frame_skip",
+        "constraints",
+        "tasks",
+        "changed",
+        "early_creatures",
+    ];
     if varied.iter().any(|key| option(key).is_some()) {
         return None;
     }

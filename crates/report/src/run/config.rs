@@ -37,7 +37,7 @@ const NOT_IDENTITY: &[&str] = &[
 /// Keys that are always shown beside a result if they are not at their usual value. Of the others,
 /// such as the learning rate, only those are shown that distinguish what would otherwise look the
 /// same.
-pub const SHOWN: [&str; 13] = [
+pub const SHOWN: [&str; 18] = [
     "rules",
     "preset",
     "hard",
@@ -51,6 +51,12 @@ pub const SHOWN: [&str; 13] = [
     "curriculum",
     "changed",
     "tasks",
+    // What makes another task, or another picture, of the same id.
+    "maps",
+    "iwad",
+    "early_creatures",
+    "published_depth",
+    "published_colours",
 ];
 
 /// Where the trainer keeps a value, and other spellings, with the name that this program has for
@@ -65,6 +71,11 @@ const SPELLINGS: &[(&str, &[&str])] = &[
     ("observation", &["env.observation"]),
     ("frame_skip", &["env.frame_skip"]),
     ("frame_stack", &["env.frame_stack"]),
+    ("maps", &["env.maps"]),
+    ("iwad", &["env.iwad"]),
+    ("early_creatures", &["env.early_creatures"]),
+    ("published_depth", &["env.published_depth"]),
+    ("published_colours", &["env.published_colours"]),
 ];
 
 /// Tics that an action is held where nothing is said of it.
@@ -250,6 +261,9 @@ impl Config {
             ("observation", "rgb"),
             ("frame_skip", "4"),
             ("frame_stack", "1"),
+            ("early_creatures", "false"),
+            ("published_depth", "false"),
+            ("published_colours", "false"),
             ("learning.products", "float32"),
             ("learning.recompute_advantages", "false"),
             ("learning.value_phase_passes", "6"),

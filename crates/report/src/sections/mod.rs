@@ -82,13 +82,14 @@ fn method() -> Section {
         slug: "method".into(),
         title: "How these numbers are made".into(),
         text: [
-            "A run is one seed. An experiment is all runs whose configuration is equal but for the seed; nothing else is ever averaged.",
-            "A table's value is, for each seed, the mean over the last ten of five hundred points at equal distances in frames (each \
+            "A run is one seed. An experiment is all runs whose configuration is equal but for the seed, for what does not change learning \
+             (such as threads and reports) and for how it was evaluated; nothing else is ever averaged.",
+            "A value of the selected checkpoints is of their closing episodes. A value of the end of training is, for each seed, the mean over the last ten of five hundred points at equal distances in frames (each \
              the mean over recently finished training episodes, on the line between the reports around it), then the mean over seeds. ± is half the 95 % interval of Student's t distribution with n - 1 in the deviation's denominator; \
              n is the number of seeds. With one seed there is no interval.",
             "Green ground: the upper end of the cost's 95 % interval over seeds is within the budget (of a single evaluated seed, over its \
              episodes); green letters: the mean is. With several constraints, each within its own. Bold: the best return among those \
-             within the budget and all that cannot be distinguished from it; if none is within, the least cost.",
+             on green ground, or if there are none among those within by their mean, and all that cannot be distinguished from it; if none is within, the least cost.",
             "Curves show the mean over seeds (line), its 95 % interval (band) and each seed (thin lines). Means end where the shortest run \
              ends, and no curve is stretched or smoothed; reports within one 240th of the axis are averaged.",
             "Returns and costs are always those of the environment, never reshaped by an algorithm.",

@@ -187,6 +187,8 @@ impl Loaded {
                 worlds.push(LaneState {
                     seeds: lane[0],
                     seed: lane[1],
+                    // The run's settings say of which.
+                    env: 0,
                     actions: own.to_vec(),
                     deltas: own_deltas.to_vec(),
                 });
