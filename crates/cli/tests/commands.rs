@@ -160,9 +160,11 @@ fn an_episode_is_recorded_replayed_and_drawn() {
     outcome.cost += 1.0;
     file.set_outcome(outcome);
     file.write(&path).unwrap();
-    for line in
-        ["replay a.episode", "replay a.episode -o end.png", "record a.episode --size 64x48 -o b.gif"]
-    {
+    for line in [
+        "replay a.episode",
+        "replay a.episode -o end.png",
+        "record a.episode --size 64x48 -o b.gif",
+    ] {
         assert_eq!(folder.run(line).status.code(), Some(1), "{line}");
     }
     // A part of it is no other end.

@@ -257,11 +257,7 @@ pub fn group(given: &Bound<'_, PyAny>) -> PyResult<usize> {
 }
 
 /// One of several choices, by its name.
-pub fn choice<T: Copy>(
-    name: &str,
-    given: &Bound<'_, PyAny>,
-    choices: &[(&str, T)],
-) -> PyResult<T> {
+pub fn choice<T: Copy>(name: &str, given: &Bound<'_, PyAny>, choices: &[(&str, T)]) -> PyResult<T> {
     let text: Option<String> = given.extract().ok();
     let found = choices.iter().find(|(name, _)| text.as_deref() == Some(*name));
     found.map(|(_, value)| *value).ok_or_else(|| {

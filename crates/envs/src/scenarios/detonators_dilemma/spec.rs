@@ -19,7 +19,7 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     moments: (MOMENTS, 4),
     guide: Some(Guide {
         collect: "Blow up barrels.",
-        avoid: "harming creatures near them, or yourself",
+        avoid: "blowing up creatures near them, or yourself",
         seed: 11,
     }),
     published_stats: &[
