@@ -76,11 +76,12 @@ def h1(campaign):
 
 def h2(campaign):
     """Over where the lower end of the cost is over the budget, within where the upper end is within it; of one seed, over episodes."""
-    over, within, open_still, all_seeds = [], [], [], set()
+    over, within, open_still, counts, all_seeds = [], [], [], [], set()
     for number in (1, 2, 3):
         lists = {env: campaign.of("PPO", env) for env in level(campaign, number)}
         seeds = common_seeds(lists.values())
         all_seeds |= seeds
+        counts.append(f"{len(seeds)} at level {number}")
         for env, runs in lists.items():
             runs, budget = of_seeds(runs, seeds), campaign.budget.get(env)
             if not runs:
@@ -92,7 +93,7 @@ def h2(campaign):
     environments = len(over) + len(within) + len(open_still)
     state = "does not hold" if within else "open" if environments < 18 else "not decided" if open_still else "holds"
     text = f"over in {len(over)} of {environments}; within: {', '.join(within) or 'none'}; not decided: {', '.join(open_still) or 'none'}"
-    return state, text, all_seeds
+    return state, f"{text}; seeds: {', '.join(counts)}", all_seeds
 
 
 def h3(campaign):
