@@ -49,7 +49,10 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "rollout",
         &[
             ("hasard rollout {env} --episodes 20", "a random policy"),
-            ("hasard rollout {env} --policy zoo:{env}", "a trained agent"),
+            (
+                "hasard rollout {env} --policy zoo:{env}",
+                "a trained agent, here or in another level",
+            ),
         ],
     ),
     (
@@ -98,10 +101,6 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             (
                 "hasard eval runs/vv1 --episodes 100 --worst 3 -o worst.mp4",
                 "a run's agent, and a film of its worst episodes",
-            ),
-            (
-                "hasard rollout VolcanicVentureLevel3 --policy zoo:{env}",
-                "an agent in another environment than its own",
             ),
         ],
     ),

@@ -87,7 +87,7 @@ pub enum EnvError {
 impl fmt::Display for EnvError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            EnvError::UnknownId { id, .. } if crate::own::is_file(id) => {
+            EnvError::UnknownId { id, .. } if id.contains(".toml") => {
                 write!(f, "{id}: a task's file is no id; own::open gives the id that it has")
             }
             EnvError::UnknownId { id, nearest } if nearest.is_empty() => {

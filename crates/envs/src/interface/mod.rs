@@ -3,6 +3,7 @@
 pub mod batch;
 pub mod buffer;
 pub mod environment;
+pub(crate) mod fingerprint;
 pub mod happening;
 pub mod insight;
 pub mod step;

@@ -38,7 +38,6 @@ mod world_tests;
 
 pub use mistakes::Mistake;
 pub use open::open;
-pub(crate) use place::hash;
 pub use place::{LARGEST_TEXT, changed, fingerprint, is_file, read_text};
 pub use task::{Checked, check, recall, register};
 pub use template::template;

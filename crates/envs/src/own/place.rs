@@ -1,6 +1,7 @@
 //! Files of scenarios where ids stand: `my_task.toml`, or `my_task.toml#2` for its second level.
 
 use super::map_file;
+use crate::interface::fingerprint::of_text;
 use crate::{EnvError, Scenario};
 use std::io::Read;
 use std::path::Path;
@@ -50,7 +51,7 @@ pub fn read_text(path: &Path) -> Result<String, EnvError> {
 /// accident that nobody will see.
 #[must_use]
 pub fn fingerprint(text: &str) -> String {
-    format!("{:016x}", hash(text))
+    format!("{:016x}", of_text(text))
 }
 
 /// What to say if the file of a scenario is another by now than what a `keeper` of its text, such as
@@ -62,12 +63,5 @@ pub fn changed(scenario: Scenario, began: &str, keeper: &str) -> Option<String> 
     (now != file.text).then(|| {
         let (path, was, is) = (file.path, file.hash, fingerprint(&now));
         format!("{path}: has changed since {began} ({was}, now {is}); the text that the {keeper} keeps is played")
-    })
-}
-
-/// FNV-1a, 64 bits.
-pub(crate) fn hash(text: &str) -> u64 {
-    text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
     })
 }

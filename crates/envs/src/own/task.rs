@@ -9,6 +9,7 @@ use super::rehearsal::rehearse;
 use super::rules::OwnRules;
 use super::tree::{Node, Value};
 use super::{check as checks, layers, place, read, tiles, tree};
+use crate::interface::fingerprint::of_text;
 use crate::scenarios::{AnyRules, ScenarioFile, ScenarioSpec, Setting, Task};
 use crate::single::blueprint::has_start;
 use crate::spaces::action::Controls;
@@ -257,7 +258,7 @@ fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
         levels: read.levels,
         budgets,
         cost_terms: Box::leak(terms.into_boxed_slice()),
-        number: place::hash(text) as isize,
+        number: of_text(text) as isize,
         file: Some(ScenarioFile {
             path: intern(path),
             text: intern(text),

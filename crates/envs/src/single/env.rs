@@ -5,11 +5,11 @@
 use crate::error::EnvError;
 use crate::interface::batch::{Episode, episode_costs};
 use crate::interface::environment::Environment;
+use crate::interface::fingerprint::of_text;
 use crate::interface::happening::Happening;
 use crate::interface::insight::Insight;
 use crate::interface::step::{CostTerm, Step};
 use crate::options::EnvOptions;
-use crate::own::hash;
 use crate::registry::scenario::EnvId;
 use crate::scenarios::common::outcome::MOST_TERMS;
 use crate::single::blueprint::{Blueprint, view};
@@ -385,7 +385,7 @@ impl Environment for Env {
 
     fn fingerprint(&self) -> u64 {
         let (id, options) = (self.id(), &self.blueprint.options);
-        hash(&format!(
+        of_text(&format!(
             "{id} {} {} {} {} {} {} {:?} {:?} {:?}",
             options.rules.name(),
             options.early_creatures,
