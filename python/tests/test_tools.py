@@ -302,7 +302,10 @@ def test_two_sets_of_runs_are_scored_beside_each_other(tmp_path: Path) -> None:
     def run(folder: str, seed: int, returned: float, cost: float, high: float | None = None) -> None:
         path = tmp_path / folder / f"seed{seed}"
         path.mkdir(parents=True)
-        (path / "config.json").write_text(json.dumps({"env": {"id": "A-v0"}, "seed": seed, "constraints": [{"budget": 5.0}]}))
+        algorithm = "PPO" if folder.startswith("ppo") else "PPOPID"
+        env = {"id": "A-v0", "rules": "paper", "hard": False, "full_actions": False}
+        config = {"algorithm": algorithm, "env": env, "seed": seed, "constraints": [{"budget": 5.0}]}
+        (path / "config.json").write_text(json.dumps(config))
         ends = None if high is None else [0.0, high]
         closing = {"episode_return": {"mean": returned}, "cost": {"mean": cost, "half_width": 0.5, "bootstrap": ends}}
         (path / "selected.json").write_text(json.dumps({"closing": closing, "last": closing}))
@@ -317,6 +320,8 @@ def test_two_sets_of_runs_are_scored_beside_each_other(tmp_path: Path) -> None:
     scored = tool("quick_old_new")
     scales = scored.scales_of(tmp_path / "ppo", tmp_path)
     assert scales == {"A-v0": (1.0, 11.0)}
+    with pytest.raises(SystemExit, match="the scale is PPO's"):
+        scored.scales_of(tmp_path / "old", tmp_path)
     text = scored.table(scored.runs_of(tmp_path / "old"), scored.runs_of(tmp_path / "new"), scales)
     assert "| ALevel" not in text and "| A | 1, 2 | 6.0 @ 4.3 (1/2) | 0.25 | 8.5 @ 4.2 (2/2) | 0.75 |" in text
     assert "Mean feasible score 0.25 and 0.75, a ratio of 3.00, 2.00 to inf" in text
