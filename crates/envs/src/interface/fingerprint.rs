@@ -1,4 +1,4 @@
-//! Fingerprints of what is told apart by its text.
+//! Fingerprints of texts.
 
 /// FNV-1a, 64 bits.
 pub(crate) fn of_text(text: &str) -> u64 {
