@@ -25,13 +25,16 @@ pub struct Under {
     hard: bool,
     full_actions: bool,
     frame_skip: u32,
+    early_creatures: bool,
+    maps: bool,
 }
 
 impl Under {
     /// Of the worlds of these options.
     pub fn of(options: &EnvOptions) -> Under {
-        let EnvOptions { rules, hard, full_actions, frame_skip, .. } = *options;
-        Under { rules, hard, full_actions, frame_skip }
+        let EnvOptions { rules, hard, full_actions, frame_skip, early_creatures, .. } = *options;
+        let maps = options.maps.is_some();
+        Under { rules, hard, full_actions, frame_skip, early_creatures, maps }
     }
 
     /// The same for people: what is not usual, and the rules in any case.
@@ -46,6 +49,12 @@ impl Under {
         if self.frame_skip != EnvOptions::default().frame_skip {
             words += &format!(", {} tics an action", self.frame_skip);
         }
+        if self.early_creatures {
+            words += ", early creatures";
+        }
+        if self.maps {
+            words += ", other maps";
+        }
         words
     }
 
@@ -58,6 +67,12 @@ impl Under {
         }
         if self.frame_skip != EnvOptions::default().frame_skip {
             row["frame_skip"] = json!(self.frame_skip);
+        }
+        if self.early_creatures {
+            row["early_creatures"] = json!(true);
+        }
+        if self.maps {
+            row["maps"] = json!(true);
         }
     }
 }

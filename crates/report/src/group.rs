@@ -143,9 +143,7 @@ impl Group {
     /// Whether every run reached the frames that it was asked for; `true` if they do not say.
     #[must_use]
     pub fn finished(&self) -> bool {
-        self.runs
-            .iter()
-            .all(|run| run.config.frames.is_none_or(|asked| run.frames() >= asked * 0.999))
+        self.runs.iter().all(Run::finished)
     }
 
     /// The least number of frames that one of its runs was first asked for, if any went on beyond

@@ -124,6 +124,7 @@ fn escaped(text: &str) -> String {
             '>' => out.push_str("\\textgreater{}"),
             '±' => out.push_str("$\\pm$"),
             '†' => out.push_str("$\\dagger$"),
+            '‡' => out.push_str("$\\ddagger$"),
             '’' => out.push('\''),
             // What no common font of LaTeX has must not end its run.
             other if other.is_ascii_graphic() || other == ' ' => out.push(other),

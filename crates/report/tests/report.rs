@@ -347,7 +347,8 @@ fn each_term_stands_beside_its_own_budget() {
     let selected = line("lava 30, falls 2.5 |");
     assert!(selected.contains("lava 18.00 ± 127") && selected.contains("| 123k |"), "{selected}");
     assert!(selected.contains("| 50 % | 28.00, 3.00 |"), "{selected}");
-    assert!(line("mean of 2").contains("20.00 ± 0.00"), "{}", line("mean of 2"));
+    let mean = line("mean of 2");
+    assert!(mean.contains("20.00 ± 0.00 | lava 18.00 ± 0.00, falls 2.50 ± 0.00"), "{mean}");
     let csv = std::fs::read_to_string(out.join("experiments.csv")).unwrap();
     assert!(csv.contains(",true,true,"), "{csv}");
     assert!(std::fs::read_to_string(out.join("index.html")).unwrap().contains("cost: falls"));

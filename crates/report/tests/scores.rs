@@ -103,3 +103,63 @@ fn a_later_evaluation_counts_by_the_runs_own_episodes() {
     let text = std::fs::read_to_string(out.join("report.md")).unwrap();
     assert!(text.contains("| 3 | 20.00 ± "), "{text}");
 }
+
+/// Other creatures, other maps, another file of an own task: what random play and PPO return in the
+/// usual ones is no scale for them. Nor has a run that is still training a score.
+#[test]
+fn another_task_of_the_same_name_and_unfinished_training_have_no_score() {
+    let folder = Folder::new("other_tasks");
+    let runs = folder.0.join("runs");
+    let env = "DetonatorsDilemmaLevel1-v0";
+    let early = ",\"early_creatures\":true";
+    let maps = ",\"maps\":\"/my maps\"";
+    let hash = ",\"env.scenario_file.hash\":\"7\"";
+    let run = |name: &str, algo: &str, options: &str, seed: u64, reached: f64| {
+        let directory = runs.join(name);
+        let end = if algo == "PPO" { (12.0, 40.0, 0.0) } else { (7.0, 4.5, 0.0) };
+        Synthetic { env, algo, seed, frames: reached, reports: 20, options, end }.write(&directory);
+        let config = directory.join("config.json");
+        let text = std::fs::read_to_string(&config).unwrap();
+        let frames = |frames: f64| format!("\"frames\":{frames}");
+        std::fs::write(&config, text.replace(&frames(reached), &frames(1e6))).unwrap();
+    };
+    run("ppo", "PPO", "", 1, 1e6);
+    run("usual", "PPOPID", "", 1, 1e6);
+    run("unfinished", "PPOPID", "", 2, 5e5);
+    for (name, options) in [("early", early), ("maps", maps), ("file", hash)] {
+        run(name, "PPOPID", options, 1, 1e6);
+    }
+    // Of these only the first plays the usual task.
+    for (k, (word, earned)) in
+        [("", 2), (",\"early_creatures\":true", 100), (",\"maps\":true", 100)].iter().enumerate()
+    {
+        let line = |seed: u64| {
+            format!(
+                "{{\"env\":\"{env}\",\"rules\":\"tables\",\"seed\":{seed},\"return\":{earned},\"cost\":1,\"length\":525{word}}}\n"
+            )
+        };
+        std::fs::write(runs.join(format!("random-{k}.jsonl")), line(1) + &line(2)).unwrap();
+    }
+    let out = folder.0.join("out");
+    write_report(&[runs.clone()], &out, "Other tasks").unwrap();
+    let text = std::fs::read_to_string(out.join("runs.csv")).unwrap();
+    let scores: Vec<(&str, &str)> = text
+        .lines()
+        .filter(|row| row.contains(",PPOPID,"))
+        .map(|row| {
+            let directory = row.split(",Deton").next().unwrap().rsplit('/').next().unwrap();
+            (directory, row.split_once("end of training,").unwrap().1)
+        })
+        .collect();
+    for (directory, row) in &scores {
+        assert_eq!(row.ends_with(",,"), *directory != "usual", "{directory}: {row}");
+    }
+    assert_eq!(scores.len(), 5, "{text}");
+    // What is missing is named with its options, the path in quotes.
+    write_report(&[runs.join("maps")], &out, "Other maps").unwrap();
+    let page = std::fs::read_to_string(out.join("report.md")).unwrap();
+    let command = format!(
+        "hasard rollout {env} --policy random --episodes 100 --rules tables --maps '/my maps' --json"
+    );
+    assert!(page.contains(&command), "{page}");
+}

@@ -156,6 +156,7 @@ fn win_ansi(text: &str) -> Vec<u8> {
         '—' => 151,
         '’' => 146,
         '†' => 134,
+        '‡' => 135,
         _ => b'?',
     };
     text.chars().map(letter).collect()

@@ -342,6 +342,12 @@ impl Config {
         self.options.get("frame_skip").and_then(|tics| tics.parse().ok()).unwrap_or(FRAME_SKIP)
     }
 
+    /// Whether it meets the creatures of the paper's first runs.
+    #[must_use]
+    pub fn early_creatures(&self) -> bool {
+        self.options.get("early_creatures").is_some_and(|early| early == "true")
+    }
+
     /// Whether the constraint is hard.
     #[must_use]
     pub fn hard(&self) -> bool {

@@ -129,6 +129,7 @@ fn read_episode_file(path: &Path, found: &mut Found) {
         Ok(file) => {
             let header = file.header();
             if let Some(outcome) = &header.outcome {
+                let is = |key: &str| header.options.get(key).is_some_and(|value| value == "true");
                 let result = EpisodeResult {
                     env: header.env.clone(),
                     episode_return: outcome.episode_return,
@@ -137,15 +138,14 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     stats: Vec::new(),
                     rules: header.options.get("rules").cloned(),
                     hard: header.options.get("hard").map(|hard| hard == "true"),
-                    full_actions: header
-                        .options
-                        .get("full-actions")
-                        .is_some_and(|full| full == "true"),
+                    full_actions: is("full-actions"),
                     frame_skip: header
                         .options
                         .get("frame-skip")
                         .and_then(|tics| tics.parse().ok())
                         .unwrap_or(FRAME_SKIP),
+                    maps: header.options.contains_key("maps"),
+                    early_creatures: is("early-creatures"),
                     length: Some(f64::from(header.steps)),
                     seed: None,
                 };

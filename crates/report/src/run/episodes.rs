@@ -27,6 +27,10 @@ pub struct EpisodeResult {
     pub full_actions: bool,
     /// Tics that each action was held.
     pub frame_skip: u64,
+    /// Whether it was played in other maps than the built-in ones.
+    pub maps: bool,
+    /// Whether it met the creatures of the paper's first runs.
+    pub early_creatures: bool,
     /// Policy steps, if known.
     pub length: Option<f64>,
     /// What it began from, if the line says.
@@ -97,6 +101,7 @@ pub fn read_episode_lines(
             continue;
         }
         let number = |key: &str| value.get(key).and_then(Value::as_f64);
+        let is = |key: &str| value.get(key).and_then(Value::as_bool).unwrap_or(false);
         match (number("return"), number("cost")) {
             (Some(episode_return), Some(cost)) => episodes.push(EpisodeResult {
                 env: value.get("env").and_then(Value::as_str).unwrap_or_default().to_owned(),
@@ -106,8 +111,10 @@ pub fn read_episode_lines(
                 stats: named(&value, "stats"),
                 rules: value.get("rules").and_then(Value::as_str).map(String::from),
                 hard: value.get("hard").and_then(Value::as_bool),
-                full_actions: value.get("full_actions").and_then(Value::as_bool).unwrap_or(false),
+                full_actions: is("full_actions"),
                 frame_skip: value.get("frame_skip").and_then(Value::as_u64).unwrap_or(FRAME_SKIP),
+                maps: is("maps"),
+                early_creatures: is("early_creatures"),
                 length: number("length"),
                 seed: value.get("seed").and_then(Value::as_u64),
             }),

@@ -158,6 +158,12 @@ impl Run {
         self.rows.last().map_or(0.0, |row| row.frames)
     }
 
+    /// Whether it has reached the frames that it was asked for; `true` if it does not say.
+    #[must_use]
+    pub fn finished(&self) -> bool {
+        self.config.frames.is_none_or(|asked| self.frames() >= asked * 0.999)
+    }
+
     /// A metric at the end of training; `None` if no report has it.
     ///
     /// The published tables take the mean over the last ten of a run's five hundred points. Reports

@@ -140,6 +140,8 @@ mod tests {
             hard: None,
             full_actions: false,
             frame_skip: crate::run::FRAME_SKIP,
+            maps: false,
+            early_creatures: false,
             length: Some(525.0),
             seed: None,
         };

@@ -3,6 +3,19 @@
 use crate::group::Group;
 use crate::run::{Config, FRAME_SKIP, Found, Run, scenario_and_level};
 use crate::statistics::{Estimate, feasible_scores, mean, normalised};
+use hasard_media::shell::quote;
+
+/// What makes another task of the same environment: returns are compared only where all of it is the
+/// same.
+const TASK: [&str; 7] = [
+    "rules",
+    "hard",
+    "full_actions",
+    "frame_skip",
+    "maps",
+    "early_creatures",
+    "env.scenario_file.hash",
+];
 
 /// Scores of experiments, relative to our own random policy and PPO.
 pub(crate) struct Baselines<'a> {
@@ -42,6 +55,8 @@ impl<'a> Baselines<'a> {
                 && one.hard.unwrap_or(false) == config.hard()
                 && one.full_actions == config.full_actions()
                 && one.frame_skip == config.frame_skip()
+                && one.maps == config.options.contains_key("maps")
+                && one.early_creatures == config.early_creatures()
         });
         Estimate::of(&same.map(|one| one.episode_return).collect::<Vec<_>>())
     }
@@ -53,12 +68,8 @@ impl<'a> Baselines<'a> {
     /// observation, where there is one.
     pub fn ppo(&self, group: &Group) -> Option<(f64, f64)> {
         let task = |config: &Config| {
-            let options = ["rules", "hard", "full_actions", "frame_skip"];
-            (
-                config.scenario.clone(),
-                config.level,
-                options.map(|key| config.options.get(key).cloned()),
-            )
+            let options = TASK.map(|key| config.options.get(key).cloned());
+            (config.scenario.clone(), config.level, options)
         };
         let own = task(group.config());
         // What was trained on other levels or tasks too says nothing of what PPO reaches in this one.
@@ -131,30 +142,16 @@ impl<'a> Baselines<'a> {
         for group in groups {
             let config = group.config();
             let rules = config.rules().unwrap_or("paper");
+            let (task, env, options) = (config.task(), &config.env, task_options(config));
+            let of_file = options.replace(" --", "-").replace([' ', '/', '\''], "");
             if self.random(config).is_none() {
-                let env = &config.env;
-                let mut options = String::new();
-                if config.hard() {
-                    options += " --hard";
-                }
-                if config.full_actions() {
-                    options += " --full-actions";
-                }
-                if config.frame_skip() != FRAME_SKIP {
-                    options += &format!(" --frame-skip {}", config.frame_skip());
-                }
-                let file =
-                    format!("random-{env}-{rules}{}", options.replace(" --", "-").replace(' ', ""));
-                let task = config.task();
                 commands.push(format!(
-                    "hasard rollout {task} --policy random --episodes 100 --rules {rules}{options} --json > runs/{file}.jsonl"
+                    "hasard rollout {task} --policy random --episodes 100 --rules {rules}{options} --json > runs/random-{env}-{rules}{of_file}.jsonl"
                 ));
             }
             if self.ppo(group).is_none() {
                 commands.push(format!(
-                    "hasard train {} --algo PPO --rules {rules} --out runs/{}-PPO",
-                    config.task(),
-                    config.env
+                    "hasard train {task} --algo PPO --rules {rules}{options} --out runs/{env}-PPO{of_file}"
                 ));
             }
         }
@@ -164,10 +161,35 @@ impl<'a> Baselines<'a> {
     }
 }
 
+/// What makes its task another than the environment's usual one under its rules, as options of a
+/// command.
+fn task_options(config: &Config) -> String {
+    let mut options = String::new();
+    for (on, option) in [
+        (config.hard(), " --hard"),
+        (config.full_actions(), " --full-actions"),
+        (config.early_creatures(), " --early-creatures"),
+    ] {
+        if on {
+            options += option;
+        }
+    }
+    if config.frame_skip() != FRAME_SKIP {
+        options += &format!(" --frame-skip {}", config.frame_skip());
+    }
+    if let Some(maps) = config.options.get("maps") {
+        options += &format!(" --maps {}", quote(maps));
+    }
+    options
+}
+
 /// A seed's return, and the upper end of each cost beside its budget: of the last policy's closing
 /// evaluation, or of the selected checkpoint's, or of the end of training (then without an
-/// interval).
+/// interval). Training that has not come to its end says nothing yet.
 fn judged(run: &Run) -> Option<(f64, Vec<(f64, f64)>)> {
+    if judged_by(run) == TRAINING && !run.finished() {
+        return None;
+    }
     let costs = run.config.constraints.iter().map(|one| {
         let cost = judged_metric(run, &one.metric())?;
         Some((cost.high(), one.budget))
@@ -186,6 +208,7 @@ pub(crate) fn judged_metric(run: &Run, metric: &str) -> Option<Estimate> {
 
 const LAST: &str = "last policy";
 const SELECTED: &str = "selected checkpoint";
+const TRAINING: &str = "end of training";
 
 /// What a seed's score rests on, for people.
 pub(crate) fn judged_by(run: &Run) -> &'static str {
@@ -194,6 +217,6 @@ pub(crate) fn judged_by(run: &Run) -> &'static str {
     } else if run.evaluated("return_mean").is_some() {
         SELECTED
     } else {
-        "end of training"
+        TRAINING
     }
 }

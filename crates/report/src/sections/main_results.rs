@@ -73,11 +73,11 @@ pub(super) fn marked_cells(members: &[&Group], source: Source) -> Vec<(Cell, Cel
         .zip(marks)
         .map(|((group, last), (return_mark, cost_mark))| {
             let mut return_cell = Cell::estimate(Estimate::of(&last.returns), &last.returns);
-            let mut cost_cell = Cell::estimate(Estimate::of(&last.costs), &last.costs);
+            let mut cost_cell = cost_cell(group, source);
             return_cell.mark = return_mark;
             cost_cell.mark = cost_mark;
             if !group.finished() && !last.returns.is_empty() {
-                return_cell.text += " *";
+                return_cell.text += " ‡";
                 let asked = group.config().frames.map(crate::document::frames).unwrap_or_default();
                 return_cell.title += &format!(
                     "; unfinished: {} of {asked} frames",
@@ -94,6 +94,23 @@ pub(super) fn marked_cells(members: &[&Group], source: Source) -> Vec<(Cell, Cel
             (return_cell, cost_cell)
         })
         .collect()
+}
+
+/// The costs that an experiment's budgets hold: the whole cost, or each constrained term by its name.
+pub(super) fn cost_cell(group: &Group, source: Source) -> Cell {
+    let of = |metric: &str| {
+        let samples = group.samples(source, metric);
+        Cell::estimate(Estimate::of(&samples), &samples)
+    };
+    let constraints = &group.config().constraints;
+    if constraints.iter().all(|one| one.term.is_none()) {
+        return of("cost_mean");
+    }
+    let named = constraints.iter().map(|one| (one, of(&one.metric())));
+    let named: Vec<(&Constraint, Cell)> = named.collect();
+    let text = named.iter().map(|(one, cell)| format!("{} {}", one.name(), cell.text));
+    let note = named.iter().map(|(_, cell)| cell.note.clone()).min().unwrap_or_default();
+    Cell { note, ..Cell::text(text.collect::<Vec<_>>().join(", ")) }
 }
 
 /// What an experiment came to: a number a seed, and how its costs stand to the budgets.
@@ -224,8 +241,8 @@ fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table
     if rows.iter().any(|row| row[0].text.ends_with("(paper)")) {
         caption += "; the paper's after 500M frames";
     }
-    if rows.iter().flatten().any(|cell| cell.text.contains('*')) {
-        caption += "; * not every run has finished";
+    if rows.iter().flatten().any(|cell| cell.text.contains('‡')) {
+        caption += "; ‡ not every run has finished";
     }
     if rows.iter().flatten().any(|cell| cell.text.ends_with('†')) {
         caption += "; † went on beyond the frames that its schedules were made for";

@@ -92,7 +92,7 @@ pub(super) fn runs(groups: &[Group]) -> Section {
                 .frames_per_second()
                 .map_or_else(|| Cell::text("-"), |fps| Cell::number(fps).with_text(number(fps)));
             let state = match run.config.frames {
-                Some(asked) if run.frames() < asked * 0.999 => {
+                Some(asked) if !run.finished() => {
                     format!("{:.0} %", 100.0 * run.frames() / asked)
                 }
                 _ => "finished".into(),

@@ -1,5 +1,6 @@
 //! The agents that one gets from runs, rather than the training that made them: a row a run.
 
+use super::main_results::cost_cell;
 use super::setting;
 use crate::document::{Block, Cell, Mark, Section, Table, frames, number};
 use crate::group::{Group, Source, scenario_name};
@@ -129,7 +130,11 @@ fn mean_row(group: &Group, runs: usize) -> Vec<Cell> {
         Cell::text(format!("mean of {runs}")),
     ];
     cells.extend(std::iter::repeat_n(Cell::text(""), 4));
-    let cost = Cell { mark: Mark::of(group.kept(Source::Evaluation)), ..over_seeds("cost_mean") };
+    let cost = Cell {
+        mark: Mark::of(group.kept(Source::Evaluation)),
+        note: String::new(),
+        ..cost_cell(group, Source::Evaluation)
+    };
     cells.extend([over_seeds("return_mean"), cost]);
     cells.extend(std::iter::repeat_n(Cell::text(""), 4));
     cells
