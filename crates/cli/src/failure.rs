@@ -176,11 +176,17 @@ fn elsewhere(flag: &str) -> Option<String> {
             "there is no {flag}; environments stand without a flag, as in `hasard rollout ENV --policy AGENT`, which plays an agent in any"
         ));
     }
-    let train = crate::args::Cli::command();
-    let train = train.find_subcommand("train")?;
-    let of_train = |name: &str| train.get_arguments().any(|one| one.get_long() == Some(name));
-    if of_train(name) {
-        return Some(format!("{flag} is of `hasard train`, not of this command"));
+    let all = crate::args::Cli::command();
+    let has = |one: &clap::Command| one.get_arguments().any(|one| one.get_long() == Some(name));
+    let having = all.get_subcommands().filter(|one| has(one)).map(clap::Command::get_name);
+    match having.collect::<Vec<&str>>()[..] {
+        [] => {}
+        [only] => return Some(format!("{flag} is of `hasard {only}`, not of this command")),
+        [ref first @ .., last] if first.len() < 4 => {
+            let first = first.join(", ");
+            return Some(format!("{flag} is of {first} and {last}, not of this command"));
+        }
+        _ => return Some(format!("this command has no {flag}")),
     }
     let setting = hasard_learn::config::explained::named(&name.replace('-', "_"))?;
     Some(match crate::commands::flag_of(&setting) {

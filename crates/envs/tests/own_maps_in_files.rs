@@ -154,6 +154,23 @@ fn wrong_maps_are_named_in_a_line() {
         let error = folder.open("Wrong", map).unwrap_err();
         assert!(error.contains(words) && error.lines().count() == 1, "{map}: {error}");
     }
+    // A check lists maps that cannot be read among the mistakes, each where it is named.
+    let maps = "[map]\nudmf = \"absent\\u0007.udmf\"\n[levels.2]\nmap = { wad = \"no.wad\" }\ncolour = 1\n";
+    let path = folder.0.join("Listed.toml");
+    std::fs::write(&path, REST.replace("NAME", "Listed") + maps).unwrap();
+    assert!(own::read_text(&path).unwrap_err().to_string().contains("[map] udmf"));
+    let checked = own::check(&own::read_to_check(&path).unwrap());
+    let mistakes: Vec<String> = checked.mistakes.iter().map(ToString::to_string).collect();
+    let first = REST.lines().count() + 2;
+    for (line, column, words) in [
+        (first, 8, "cannot be read: No such file or directory (os error 2); the path leads from"),
+        (first + 2, 15, "[map] wad = \"no.wad\": "),
+        (first + 3, 1, "`colour` is unknown"),
+    ] {
+        let beginning = format!("{line}:{column}: ");
+        let listed = mistakes.iter().any(|one| one.starts_with(&beginning) && one.contains(words));
+        assert!(listed, "{beginning}{words}: {mistakes:#?}");
+    }
     // A text alone cannot bring a file.
     let text = REST.replace("NAME", "Alone") + "[map]\nwad = \"yard.wad\"\n";
     let error = own::register("alone.toml", &text).unwrap_err().to_string();

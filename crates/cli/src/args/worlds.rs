@@ -180,6 +180,9 @@ pub struct ExportWadArgs {
     /// The hard constraint's map
     #[arg(long)]
     pub hard: bool,
+    /// One JSON object about the file
+    #[arg(long)]
+    pub json: bool,
     /// Takes a seed as every command does
     #[command(flatten)]
     pub seed: UnusedSeed,

@@ -19,7 +19,7 @@ pub fn run(args: &CheckArgs) -> Outcome {
             "{name}: all levels are checked; give {whole}, and --level {level} to draw that one"
         )));
     }
-    let text = own::read_text(&args.file).map_err(Failure::bad)?;
+    let text = own::read_to_check(&args.file).map_err(Failure::bad)?;
     let checked = own::check(&text);
     let file = args.file.display().to_string();
     let mut lines = Lines::new();

@@ -21,35 +21,63 @@ const LARGEST_MAP: usize = 8 << 20;
 /// Most letters of a list of what a map leaves out.
 const LONGEST_LIST: usize = 2000;
 
+/// A task's text with the maps that it names.
+pub(super) struct WithMaps {
+    /// Says, as `[map.unread]`, of each map that cannot be read why not.
+    pub text: String,
+    /// The same of the first of them, in one line.
+    pub wrong: Option<String>,
+}
+
 /// A text with the maps that it names, which lie in `folder` or where their paths lead from there.
-///
-/// # Errors
-/// What is wrong with a map's file, in one line.
-pub(super) fn with_maps(text: String, folder: &Path) -> Result<String, String> {
+pub(super) fn with_maps(text: String, folder: &Path) -> WithMaps {
     // What is wrong with the text is for its reader to say, with line and column.
     let root = tree::parse(&text, &mut Mistakes::new(&text));
     let mut named = Vec::new();
     find(&root, &mut named);
     let is_laid = root.get("map").is_some_and(|map| map.node.get("files").is_some());
     if named.is_empty() || is_laid {
-        return Ok(text);
+        return WithMaps { text, wrong: None };
     }
     let mut whole = format!("{}\n\n[map.files]\n", text.trim_end());
-    let mut left_out = String::new();
+    let (mut left_out, mut unread, mut wrong) = (String::new(), String::new(), None);
     for (key, place) in named {
-        let (written, parts) = read_place(key, place, folder)
-            .map_err(|why| format!("[map] {key} = \"{}\": {why}", excerpt(place)))?;
-        let name = place.replace('\\', "\\\\").replace('"', "\\\"");
-        whole += &format!("\"{name}\" = '''\n{written}'''\n");
-        if !parts.is_empty() {
-            left_out += &format!("\"{name}\" = \"{}\"\n", parts.join(", "));
+        let name = quoted(place);
+        match read_place(key, place, folder) {
+            Ok((written, parts)) => {
+                whole += &format!("{name} = '''\n{written}'''\n");
+                if !parts.is_empty() {
+                    left_out += &format!("{name} = \"{}\"\n", parts.join(", "));
+                }
+            }
+            Err(why) => {
+                let why = format!("[map] {key} = \"{}\": {why}", excerpt(place));
+                unread += &format!("{name} = {}\n", quoted(&why));
+                wrong.get_or_insert(why);
+            }
         }
+    }
+    if !unread.is_empty() {
+        whole += &format!("\n[map.unread]\n{unread}");
     }
     // The map is written without what is not played, so the text keeps the list of it.
     if !left_out.is_empty() {
         whole += &format!("\n[map.left_out]\n{left_out}");
     }
-    Ok(whole)
+    WithMaps { text: whole, wrong }
+}
+
+/// A text as TOML writes it in quotes.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for letter in text.chars() {
+        match letter {
+            '\\' | '"' => quoted.extend(['\\', letter]),
+            letter if letter.is_control() => quoted += &format!("\\u{:04X}", letter as u32),
+            letter => quoted.push(letter),
+        }
+    }
+    quoted + "\""
 }
 
 /// The files that the `map` tables of a text name, each once.
@@ -74,7 +102,8 @@ fn read_place(key: &str, place: &str, folder: &Path) -> Result<(String, Vec<Stri
         Some((path, name)) if key == "wad" => (path, name),
         _ => (place, FIRST_MAP),
     };
-    let bytes = read_map_file(&folder.join(path)).map_err(|error| wrong(&error))?;
+    let bytes = read_map_file(&folder.join(path))
+        .map_err(|error| format!("{error}; the path leads from the folder of the task's file"))?;
     let wad;
     let map_text = if key == "wad" {
         wad = Wad::read(&bytes).map_err(|error| wrong(&error))?;
@@ -95,15 +124,27 @@ fn is_inline(text: &str) -> bool {
     text.contains('{')
 }
 
-/// The plan of a map that `named` says the place of, or is; `files` are what was laid beneath, and
-/// `lists` what each of them leaves out.
+/// What was laid beneath a text, by the names of the maps.
+pub(super) struct Beneath<'a> {
+    pub files: Option<&'a Node>,
+    /// What each of them leaves out.
+    pub left_out: Option<&'a Node>,
+    /// Why others could not be read.
+    pub unread: Option<&'a Node>,
+}
+
+/// The plan of a map that `named` says the place of, or is.
 pub(super) fn drawn(
     (named, at): (&str, usize),
-    files: Option<&Node>,
-    lists: Option<&Node>,
+    beneath: &Beneath,
     mistakes: &mut Mistakes,
 ) -> Option<MapPlan> {
+    let Beneath { files, left_out: lists, unread } = *beneath;
     let inline = is_inline(named).then_some(named);
+    if let Some(why) = unread.and_then(|unread| unread.get(named)?.node.text()) {
+        mistakes.add(at, why);
+        return None;
+    }
     let Some(text) = inline.or_else(|| files?.get(named)?.node.text()) else {
         mistakes.add(
             at,

@@ -1,6 +1,6 @@
 //! Files of scenarios where ids stand: `my_task.toml`, or `my_task.toml#2` for its second level.
 
-use super::map_file;
+use super::map_file::{WithMaps, with_maps};
 use crate::interface::fingerprint::of_text;
 use crate::{EnvError, Scenario};
 use std::io::Read;
@@ -19,10 +19,27 @@ pub fn is_file(text: &str) -> bool {
 /// The text of a scenario's file, and of the maps that it names in other files.
 ///
 /// # Errors
-/// One line that names the file and what is wrong with it.
+/// One line that names the file and what is wrong with it, or with a map's.
 pub fn read_text(path: &Path) -> Result<String, EnvError> {
+    let WithMaps { text, wrong } = read(path)?;
+    wrong.map_or(Ok(text), |why| Err(error_in(path, &why)))
+}
+
+/// The same, for [`super::check`]: what is wrong with a map's file is a mistake among the others.
+///
+/// # Errors
+/// One line that names the file and what is wrong with it.
+pub fn read_to_check(path: &Path) -> Result<String, EnvError> {
+    Ok(read(path)?.text)
+}
+
+fn error_in(path: &Path, why: &str) -> EnvError {
     let shown = crate::error::excerpt(&path.display().to_string());
-    let wrong = |why: String| EnvError::Scenario { why: format!("{shown}: {why}") };
+    EnvError::Scenario { why: format!("{shown}: {why}") }
+}
+
+fn read(path: &Path) -> Result<WithMaps, EnvError> {
+    let wrong = |why: String| error_in(path, &why);
     let unreadable = |error: std::io::Error| {
         wrong(format!("cannot be read: {error}; `hasard new NAME` writes a file to begin with"))
     };
@@ -44,7 +61,7 @@ pub fn read_text(path: &Path) -> Result<String, EnvError> {
         wrong(format!("line {line} is no UTF-8 text; save the file as UTF-8"))
     })?;
     // A run needs nothing but the text: the map comes with it.
-    map_file::with_maps(text, path.parent().unwrap_or(Path::new(""))).map_err(wrong)
+    Ok(with_maps(text, path.parent().unwrap_or(Path::new(""))))
 }
 
 /// A fingerprint of a text, 16 hexadecimal digits: two texts that differ have two, but for an

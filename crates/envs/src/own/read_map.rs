@@ -28,8 +28,8 @@ pub(super) fn map(
     let built_in = fields.text("builtin", mistakes);
     let wad = fields.text("wad", mistakes);
     let udmf = fields.text("udmf", mistakes);
-    let files = fields.node("files");
-    let lists = fields.node("left_out");
+    let [files, left_out, unread] = ["files", "left_out", "unread"].map(|name| fields.node(name));
+    let beneath = map_file::Beneath { files, left_out, unread };
     let generate = fields.node("generate");
     let side = fields.whole("tile", 32, 512, mistakes).unwrap_or(64) as i32;
     let level = fields.whole("level", 1, 3, mistakes).unwrap_or(1) as u8;
@@ -64,7 +64,7 @@ pub(super) fn map(
         return found.map(|scenario| MapPlan::BuiltIn(scenario, level));
     }
     if let Some(named) = wad.or(udmf) {
-        return map_file::drawn(named, files, lists, mistakes);
+        return map_file::drawn(named, &beneath, mistakes);
     }
     let mut kinds = vec![usual('#'), usual('.'), usual('@'), usual(' ')];
     if let Some(legend) = legend {
