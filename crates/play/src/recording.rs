@@ -324,6 +324,10 @@ impl Replay {
                 episode.cost
             ));
         }
+        let (steps, length) = (self.file.header().steps, episode.length);
+        if self.stage.ended() && length < steps {
+            return Some(format!("{name}: ends after {length} of its {steps} recorded steps"));
+        }
         if (episode.terminated, episode.truncated) != (outcome.terminated, outcome.truncated) {
             return Some(format!("{name}: ends in another way than was recorded"));
         }

@@ -146,6 +146,13 @@ fn a_replay_that_differs_says_so() {
     outcome.episode_return += 1.0;
     file.set_outcome(outcome);
     assert!(play(&file).unwrap().contains("was recorded by version"));
+    // More actions than the episode lasts.
+    let mut file = record("RemedyRushLevel1-v0", &EnvOptions::default(), 600);
+    assert_eq!(play(&file), None);
+    let (groups, deltas) =
+        file.step(0).map(|(groups, deltas)| (groups.to_vec(), deltas.to_vec())).unwrap();
+    file.push(&groups, &deltas).unwrap();
+    assert!(play(&file).unwrap().ends_with("ends after 525 of its 526 recorded steps"));
 }
 
 #[test]

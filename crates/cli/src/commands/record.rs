@@ -170,11 +170,16 @@ fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions)
     let mut replay = open(file, looks)?;
     let film = play_out(&mut replay, &args.out, looks.size, &args.film, args.steps)?;
     finish(replay.stage().env(), args.json, Some(&args.out), Some(film))?;
-    compared(&replay)
+    compared(&replay, file)
 }
 
-/// An error where a replay came to its end and to another than the recording's.
-fn compared(replay: &Replay) -> Outcome {
+/// An error where a replay came to its end and to another than the recording's; a line where there is
+/// no recorded end.
+fn compared(replay: &Replay, file: &Path) -> Outcome {
+    if replay.file().header().outcome.is_none() {
+        let name = file.display();
+        note!("hasard: {name}: the recording stops within its episode; there is no end to compare");
+    }
     let difference = replay.over().then(|| replay.difference()).flatten();
     difference.map_or(Ok(()), |difference| Err(Failure::Negative(difference)))
 }
@@ -212,7 +217,7 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
             let mut views = Views::new(replay.stage(), size, &kinds).map_err(Failure::bad)?;
             hasard_media::png::write(&views.draw(replay.stage()), out).map_err(Failure::bad)?;
             finish(replay.stage().env(), args.json, Some(out), None)?;
-            return compared(&replay);
+            return compared(&replay, &args.file);
         }
         (Some(out), _) => {
             let film = play_out(&mut replay, out, size, &args.film, None)?;
@@ -223,7 +228,7 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
             finish(replay.stage().env(), args.json, None, None)?;
         }
     }
-    compared(&replay)
+    compared(&replay, &args.file)
 }
 
 fn open(file: &Path, looks: &EnvOptions) -> Result<Replay, Failure> {
