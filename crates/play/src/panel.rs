@@ -40,7 +40,7 @@ impl Panel {
     }
 
     /// Rows of the panel under a picture so wide.
-    #[cfg(any(feature = "window", test))]
+    #[cfg(feature = "window")]
     pub(crate) const fn height_under(width: usize) -> usize {
         Panel::HEIGHT * Panel::scale(width)
     }

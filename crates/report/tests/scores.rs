@@ -141,7 +141,7 @@ fn another_task_of_the_same_name_and_unfinished_training_have_no_score() {
         std::fs::write(runs.join(format!("random-{k}.jsonl")), line(1) + &line(2)).unwrap();
     }
     let out = folder.0.join("out");
-    write_report(&[runs.clone()], &out, "Other tasks").unwrap();
+    write_report(std::slice::from_ref(&runs), &out, "Other tasks").unwrap();
     let text = std::fs::read_to_string(out.join("runs.csv")).unwrap();
     let scores: Vec<(&str, &str)> = text
         .lines()
