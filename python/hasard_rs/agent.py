@@ -312,7 +312,7 @@ class Agent:
         Args:
             episodes: how many.
             seed: of the first.
-            env_id: another environment with the same buttons, such as another level: an id, or a task's file. It and `rules` hold the agent to
+            env_id: another environment that has the agent's buttons, such as another level: an id, or a task's file. It and `rules` hold the agent to
                 that task's own budget; None: the agent's own.
             rules: "paper", "released" or "tables"; None: the agent's own.
             best: as of `load`; None: as this agent was loaded. Another than that loads the run anew.
@@ -322,7 +322,7 @@ class Agent:
             A dict an episode, and the summary as the last.
 
         Raises:
-            InvalidOption for no episodes, an environment with other buttons or other rules than these, and what `load` raises;
+            InvalidOption for no episodes, an environment that lacks a button or other rules than these, and what `load` raises;
             UnknownEnvironment for an id that is none; TypeError or ValueError for a seed that is none.
         """
         asked = {name: bool(self._how[name] if value is None else value) for name, value in (("best", best), ("greedy", greedy))}

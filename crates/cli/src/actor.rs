@@ -4,7 +4,7 @@ use crate::commands::eval::Player;
 use crate::failure::Failure;
 use crate::settings::{self, Elsewhere, scenario_of};
 use crate::zoo;
-use hasard_envs::{EnvOptions, Move, PolicyRun, Step};
+use hasard_envs::{ActionSpace, EnvId, EnvOptions, Move, PolicyRun, Scenario, Step};
 use hasard_learn::config::EnvConfig;
 use hasard_learn::runs::agent::{Agent, Choice, Which, run_config};
 use hasard_play::{Recorder, Stage};
@@ -182,9 +182,93 @@ pub fn agent_options(
         note!("hasard: {}: was trained in {}, not in {id}", run.display(), env.id);
     }
     let trained = settings::trained_options(&env, pictures_kept(elsewhere, &env))?;
-    let actions_of = Some((trained.rules, trained.hard));
-    let (rules, hard, early_creatures, test_seeds) =
-        (task.rules, task.hard, task.early_creatures, task.test_seeds);
-    let scenario = task.scenario.or(trained.scenario);
-    Ok(EnvOptions { scenario, rules, hard, early_creatures, test_seeds, actions_of, ..trained })
+    let own = settings::env_id(&settings::first_task(&env))?;
+    in_task(&trained, own, settings::env_id(id)?, task).map_err(Failure::bad)
+}
+
+/// What an agent that was trained in `own`, as `trained` says, sees and presses in the environment
+/// `id` under the rules and constraint of `task`: pictures and buttons are those that it knows.
+///
+/// # Errors
+/// One line where the environment lacks a button of the agent's. (One of several tasks is used to
+/// buttons that do nothing.)
+pub fn in_task(
+    trained: &EnvOptions,
+    own: EnvId,
+    id: EnvId,
+    task: &EnvOptions,
+) -> Result<EnvOptions, String> {
+    let options = EnvOptions {
+        scenario: task.scenario.or(trained.scenario),
+        rules: task.rules,
+        hard: task.hard,
+        early_creatures: task.early_creatures,
+        test_seeds: task.test_seeds,
+        actions_of: Some((trained.rules, trained.hard)),
+        ..trained.clone()
+    };
+    if options.together.is_some() {
+        return Ok(options);
+    }
+    let buttons = |id: EnvId, of: Option<Scenario>| {
+        let of_name = of.filter(|scenario| scenario.name == id.scenario.name);
+        let id = EnvId { scenario: of_name.unwrap_or(id.scenario), ..id };
+        ActionSpace::of(id, trained.rules, trained.hard, trained.full_actions)
+    };
+    let (known, there) = (buttons(own, trained.scenario), buttons(id, options.scenario));
+    if known.names() == there.names() {
+        return Ok(options);
+    }
+    // Two tasks may have as many buttons and call them in another order.
+    let words = |space: &ActionSpace| -> Vec<String> {
+        space.names().split([' ', '|']).map(String::from).collect()
+    };
+    let has = words(&there);
+    let missing: Vec<String> = words(&known).into_iter().filter(|one| !has.contains(one)).collect();
+    if !missing.is_empty() {
+        return Err(format!(
+            "an agent of {own} cannot act in {id}: its buttons are others, there is no {}; play it in its own scenario",
+            missing.join(", ")
+        ));
+    }
+    Ok(EnvOptions { together: Some(known), ..options })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hasard_envs::{Env, RuleSet};
+
+    fn played(own: &str, id: &str, trained: &EnvOptions) -> Result<EnvOptions, String> {
+        let task = EnvOptions { rules: RuleSet::Tables, ..EnvOptions::default() };
+        in_task(trained, own.parse().unwrap(), id.parse().unwrap(), &task)
+    }
+
+    /// Both have SPEED and JUMP, in another order: an agent's third output is SPEED in either.
+    #[test]
+    fn an_agent_presses_the_buttons_that_it_knows() {
+        let trained = EnvOptions::default();
+        let (own, id) = ("RemedyRushLevel1-v0", "VolcanicVentureLevel1-v0");
+        let options = played(own, id, &trained).unwrap();
+        let space = |id: &str, options: &EnvOptions| {
+            Env::new(id, options).unwrap().action_space().clone()
+        };
+        assert_eq!(space(id, &options), space(own, &trained));
+        assert_ne!(space(id, &trained).groups, space(own, &trained).groups);
+        // Of the same scenario nothing is written of them, whatever the level.
+        assert_eq!(played(own, "RemedyRushLevel3-v0", &trained).unwrap().together, None);
+    }
+
+    /// They have as many buttons, but one of the one's is none of the other's.
+    #[test]
+    fn an_agent_does_not_act_without_its_buttons() {
+        let error = played("ArmamentBurdenLevel1", "VolcanicVentureLevel1", &EnvOptions::default());
+        let error = error.unwrap_err();
+        assert!(error.contains("there is no USE;"), "{error}");
+        let several = EnvOptions {
+            together: ActionSpace::named("TURN_LEFT|TURN_RIGHT USE"),
+            ..EnvOptions::default()
+        };
+        played("ArmamentBurdenLevel1", "VolcanicVentureLevel1", &several).unwrap();
+    }
 }

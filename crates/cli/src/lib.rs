@@ -25,6 +25,7 @@ mod sources;
 mod ticker;
 mod zoo;
 
+pub use actor::in_task;
 use args::{Cli, Command};
 use clap::{ArgMatches, FromArgMatches};
 use failure::Failure;

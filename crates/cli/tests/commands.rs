@@ -524,6 +524,8 @@ fn people_are_met_half_way() {
                 .contains("was trained in VolcanicVentureLevel1-v0, not in RemedyRushLevel2-v0")
     );
     assert_eq!(stderr("rollout RemedyRushLevel2 --policy zoo:RemedyRushLevel1 --episodes 1"), "");
+    let error = stderr("rollout RemedyRushLevel2 --policy zoo:ArmamentBurdenLevel1 --episodes 1");
+    assert!(error.contains("there is no USE; play it in its own scenario"), "{error}");
     assert!(folder.ok("sweep quick --frames 1.5M --dry-run").contains("--frames 1500000"));
     folder.ok("contact-sheet RemedyRush");
     assert!(folder.0.join("sheets/remedy_rush_sheet.png").is_file());

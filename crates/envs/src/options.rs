@@ -52,9 +52,9 @@ pub struct EnvOptions {
     /// Whose action space, by rules and hard constraint, if another than the world's own: an agent
     /// keeps the buttons that it was trained with.
     pub actions_of: Option<(RuleSet, bool)>,
-    /// The space that several tasks have together ([`ActionSpace::together`]), for an agent that was
-    /// trained on them: a button that this environment does not have does nothing in it. `None` for
-    /// its own space.
+    /// The space of an agent that was trained elsewhere: on several tasks, which have one space
+    /// together ([`ActionSpace::together`]), or in another scenario. A button that this environment
+    /// does not have does nothing in it. `None` for its own space.
     pub together: Option<ActionSpace>,
     /// Tics that each action is held; 1..=35.
     pub frame_skip: u32,

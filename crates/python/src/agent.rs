@@ -87,17 +87,10 @@ impl TrainedAgent {
             None => own.rules,
         };
         let scenario = env_id.map_or(own.scenario, |_| Some(id.scenario));
-        let actions_of = Some((own.rules, own.hard));
-        let options = EnvOptions { scenario, rules, actions_of, ..own.clone() };
-        let there = Env::new(&id.to_string(), &options).map_err(|error| raise(py, &error))?;
-        let space = there.action_space();
-        if space.sizes() != self.sizes || space.deltas.len() != self.deltas {
-            let of = &self.env_id;
-            let why = format!(
-                "an agent of {of} cannot act in {id}, whose buttons are others; choose an environment of its scenario"
-            );
-            return Err(INVALID_OPTION.error(py, why));
-        }
+        let task = EnvOptions { scenario, rules, ..own.clone() };
+        let trained_in = environment(&self.env_id).map_err(|error| raise(py, &error))?;
+        let options = hasard_cli::in_task(own, trained_in, id, &task)
+            .map_err(|why| INVALID_OPTION.error(py, why))?;
         Ok((Some(id), options))
     }
 
