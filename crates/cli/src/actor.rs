@@ -250,9 +250,8 @@ mod tests {
         let trained = EnvOptions::default();
         let (own, id) = ("RemedyRushLevel1-v0", "VolcanicVentureLevel1-v0");
         let options = played(own, id, &trained).unwrap();
-        let space = |id: &str, options: &EnvOptions| {
-            Env::new(id, options).unwrap().action_space().clone()
-        };
+        let space =
+            |id: &str, options: &EnvOptions| Env::new(id, options).unwrap().action_space().clone();
         assert_eq!(space(id, &options), space(own, &trained));
         assert_ne!(space(id, &trained).groups, space(own, &trained).groups);
         // Of the same scenario nothing is written of them, whatever the level.

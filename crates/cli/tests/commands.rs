@@ -16,7 +16,9 @@ fn a_map_from_a_file_is_played_and_remembered() {
     let folder = Folder::new("maps");
     folder.ok("export-wad RemedyRushLevel1-v0 -o town.wad");
     let rollout = "rollout RemedyRushLevel1-v0 --episodes 1 --json";
-    assert_eq!(folder.ok(&format!("{rollout} --maps town.wad")), folder.ok(rollout));
+    let of_file = folder.ok(&format!("{rollout} --maps town.wad"));
+    assert!(of_file.contains("\"maps\":true,"), "{of_file}");
+    assert_eq!(of_file.replace("\"maps\":true,", ""), folder.ok(rollout));
     folder.ok("record RemedyRushLevel1-v0 -o files.episode --steps 5 --maps town.wad");
     folder.ok("record RemedyRushLevel1-v0 -o built_in.episode --steps 5");
     folder.ok("replay files.episode --maps town.wad");

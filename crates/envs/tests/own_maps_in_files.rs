@@ -159,7 +159,7 @@ fn wrong_maps_are_named_in_a_line() {
     let path = folder.0.join("Listed.toml");
     std::fs::write(&path, REST.replace("NAME", "Listed") + maps).unwrap();
     assert!(own::read_text(&path).unwrap_err().to_string().contains("[map] udmf"));
-    let checked = own::check(&own::read_to_check(&path).unwrap());
+    let checked = own::check(&own::read_to_check(&path).unwrap().0);
     let mistakes: Vec<String> = checked.mistakes.iter().map(ToString::to_string).collect();
     let first = REST.lines().count() + 2;
     for (line, column, words) in [

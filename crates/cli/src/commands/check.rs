@@ -19,7 +19,7 @@ pub fn run(args: &CheckArgs) -> Outcome {
             "{name}: all levels are checked; give {whole}, and --level {level} to draw that one"
         )));
     }
-    let text = own::read_to_check(&args.file).map_err(Failure::bad)?;
+    let (text, unread) = own::read_to_check(&args.file).map_err(Failure::bad)?;
     let checked = own::check(&text);
     let file = args.file.display().to_string();
     let mut lines = Lines::new();
@@ -32,6 +32,11 @@ pub fn run(args: &CheckArgs) -> Outcome {
         } else {
             lines.say(format!("{file}:{mistake}"));
         }
+    }
+    // A file that cannot be read is bad input, and not only a task to mend.
+    if let Some(error) = unread {
+        lines.end(Ok(()))?;
+        return Err(Failure::bad(error));
     }
     let wrong = checked.mistakes.iter().filter(|mistake| !mistake.warning).count();
     if !checked.can_be_played() {

@@ -25,12 +25,14 @@ pub fn read_text(path: &Path) -> Result<String, EnvError> {
     wrong.map_or(Ok(text), |why| Err(error_in(path, &why)))
 }
 
-/// The same, for [`super::check`]: what is wrong with a map's file is a mistake among the others.
+/// The same, for [`super::check`]: what is wrong with a map's file is a mistake among the others. And
+/// the line of the first such, if there is one.
 ///
 /// # Errors
 /// One line that names the file and what is wrong with it.
-pub fn read_to_check(path: &Path) -> Result<String, EnvError> {
-    Ok(read(path)?.text)
+pub fn read_to_check(path: &Path) -> Result<(String, Option<EnvError>), EnvError> {
+    let WithMaps { text, wrong } = read(path)?;
+    Ok((text, wrong.map(|why| error_in(path, &why))))
 }
 
 fn error_in(path: &Path, why: &str) -> EnvError {

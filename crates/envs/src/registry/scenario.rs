@@ -5,6 +5,7 @@ use crate::scenarios::common::outcome::MOST_TERMS;
 use crate::scenarios::common::rule_set::RuleSet;
 use crate::scenarios::common::scenario::Scenario;
 use crate::scenarios::common::spec::{ScenarioSpec, Setting};
+use crate::spaces::action::BUTTONS;
 use std::fmt;
 use std::sync::{PoisonError, RwLock};
 
@@ -39,7 +40,7 @@ impl Scenario {
     ///
     /// # Errors
     /// If the name is one of the benchmark's, or no name, or if the cost terms are more than
-    /// [`MOST_TERMS`] or two have one name; one line.
+    /// [`MOST_TERMS`] or two have one name, or if a button is unknown; one line.
     pub fn register(spec: &'static ScenarioSpec) -> Result<Scenario, EnvError> {
         let refuse = |allowed: &str| EnvError::Option {
             option: "a scenario's name",
@@ -66,6 +67,11 @@ impl Scenario {
             return Err(EnvError::Option { option: "a scenario's cost terms", given, allowed });
         }
         let scenario = Scenario::of(spec);
+        if let Some(given) = wrong_buttons(spec) {
+            let names: Vec<&str> = BUTTONS.iter().map(|(name, _)| *name).collect();
+            let allowed = format!("groups of these: {}", names.join(", "));
+            return Err(EnvError::Option { option: "a scenario's buttons", given, allowed });
+        }
         let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);
         registered.retain(|known| *known != scenario);
         registered.push(scenario);
@@ -98,6 +104,19 @@ impl Scenario {
     pub fn environments(self) -> impl Iterator<Item = EnvId> {
         (1..=self.spec().levels.max(1)).map(move |level| EnvId { scenario: self, level })
     }
+}
+
+/// The first of a scenario's buttons that is none, or a group without any.
+fn wrong_buttons(spec: &ScenarioSpec) -> Option<String> {
+    let levels = 1..=spec.levels.max(1);
+    let constraints = levels.flat_map(|level| [false, true].map(|hard| (level, hard)));
+    let settings = constraints
+        .flat_map(|(level, hard)| RuleSet::ALL.map(|rules| Setting::new(rules, hard, level)));
+    settings.flat_map(|setting| spec.task.controls(setting).simplified).find_map(|group| {
+        let unknown = |name: &&&str| BUTTONS.iter().all(|(known, _)| known != *name);
+        let empty = group.is_empty().then(|| "an empty group".to_string());
+        empty.or_else(|| group.iter().find(unknown).map(|name| excerpt(name)))
+    })
 }
 
 /// Whether a scenario may be called so: its ids must differ from those of levels, and from paths.
