@@ -5,10 +5,11 @@ use crate::config::EnvConfig;
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::runs::checkpoint::parameter_names;
-use hasard_envs::ActionSpace;
+use hasard_envs::{ActionGroup, ActionSpace};
 
-/// For each output of the run's policy, that of the agent's which presses the same button; nothing
-/// if they are the same throughout, or if the agent's groups of buttons are not the run's.
+/// For each output of the run's policy, that of the agent's which presses the same button; buttons
+/// that the agent does not have begin as those of its own that the run does not have, in their order.
+/// Nothing if they are the same throughout, or if the groups of the two are of other sizes.
 ///
 /// # Errors
 /// When a configuration names no environment.
@@ -31,13 +32,22 @@ fn order_of(run: &ActionSpace, agent: &ActionSpace) -> Option<Vec<usize>> {
         agents.push((group, outputs));
     }
     let mut order = Vec::new();
+    let mut left: Vec<_> = agents.iter().filter(|(own, _)| !run.groups.contains(own)).collect();
     for group in &run.groups {
-        let (_, outputs) = agents.iter().find(|(own, _)| *own == group)?;
+        let known = agents.iter().find(|(own, _)| *own == group);
+        let (_, outputs) = match known {
+            Some(known) => known,
+            None => {
+                let as_many = |one: &&(&ActionGroup, _)| one.0.buttons.len() == group.buttons.len();
+                let place = left.iter().position(|one| as_many(one))?;
+                left.remove(place)
+            }
+        };
         order.extend(outputs.clone());
     }
     // Continuous parts come last, and always in the same order: two numbers each.
     order.extend(first..first + 2 * run.deltas.len());
-    Some(order)
+    Some(order).filter(|order| !order.is_sorted())
 }
 
 /// Puts the outputs of a learner's policy, whose weights are the agent's, in the run's order.
@@ -72,8 +82,12 @@ mod tests {
         let swapped = Some(vec![0, 1, 2, 3, 4, 7, 8, 5, 6]);
         assert_eq!(order(&tables, &paper).unwrap(), swapped);
         assert_eq!(order(&paper, &paper).unwrap(), None);
-        // Other buttons: each output stays where it is.
-        assert_eq!(order(&env("paper", "ArmamentBurden"), &paper).unwrap(), None);
+        // USE takes the place of SPEED, and JUMP stays; where SPEED is the last, both change places.
+        let burden = env("paper", "ArmamentBurden");
+        assert_eq!(order(&burden, &paper).unwrap(), None);
+        assert_eq!(order(&burden, &tables).unwrap(), swapped);
+        assert_eq!(order(&env("paper", "CollateralDamage"), &paper).unwrap(), None);
+        assert_eq!(order(&env("paper", "PrecipicePlunge"), &paper).unwrap(), None);
         let full = |env: &EnvConfig| EnvConfig { full_actions: true, ..env.clone() };
         let of = |env: &EnvConfig| env.action_space().unwrap().unwrap();
         let (mut turned, own) = (of(&full(&paper)), of(&full(&paper)));
