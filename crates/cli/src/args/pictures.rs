@@ -35,7 +35,7 @@ pub enum View {
 #[derive(Args, Debug, Clone)]
 #[command(next_help_heading = "Picture")]
 pub struct FilmArgs {
-    /// Other views beside the player's, separated by commas
+    /// Other views beside the player's, separated by commas; a film is up to 3072 wide, all together
     #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW,...")]
     pub beside: Vec<View>,
     /// Tics (1/35 s) from one frame to the next; 1 for .mp4 and 5 for .gif if absent
@@ -95,7 +95,7 @@ pub struct RenderArgs {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW,...")]
     pub beside: Vec<View>,
     /// Who acts before the picture: random, sticky:K, noop, hold:BUTTON+BUTTON,
-    /// hold-after:K:BUTTON, run:DIR, FILE.agent, zoo:NAME
+    /// hold-after:K:BUTTON, shuttle, carrier, run:DIR, FILE.agent, zoo:NAME
     #[arg(long, default_value = "random")]
     pub policy: OsString,
     /// Policy steps before the picture
@@ -124,8 +124,8 @@ pub struct RecordArgs {
     /// File to write: .mp4, .gif or .episode
     #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
     pub out: PathBuf,
-    /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR,
-    /// FILE.agent, zoo:NAME [default: random]
+    /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, shuttle,
+    /// carrier, run:DIR, FILE.agent, zoo:NAME [default: random]
     #[arg(long)]
     pub policy: Option<OsString>,
     /// Most policy steps that are taken; to the episode's end if absent
