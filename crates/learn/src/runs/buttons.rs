@@ -39,7 +39,7 @@ fn order_of(run: &ActionSpace, agent: &ActionSpace) -> Option<Vec<usize>> {
             Some(known) => known,
             None => {
                 let as_many = |one: &&(&ActionGroup, _)| one.0.buttons.len() == group.buttons.len();
-                let place = left.iter().position(|one| as_many(one))?;
+                let place = left.iter().position(as_many)?;
                 left.remove(place)
             }
         };
