@@ -261,13 +261,14 @@ mod tests {
     /// They have as many buttons, but one of the one's is none of the other's.
     #[test]
     fn an_agent_does_not_act_without_its_buttons() {
-        let error = played("ArmamentBurdenLevel1", "VolcanicVentureLevel1", &EnvOptions::default());
+        let error =
+            played("ArmamentBurdenLevel1-v0", "VolcanicVentureLevel1-v0", &EnvOptions::default());
         let error = error.unwrap_err();
         assert!(error.contains("there is no USE;"), "{error}");
         let several = EnvOptions {
             together: ActionSpace::named("TURN_LEFT|TURN_RIGHT USE"),
             ..EnvOptions::default()
         };
-        played("ArmamentBurdenLevel1", "VolcanicVentureLevel1", &several).unwrap();
+        played("ArmamentBurdenLevel1-v0", "VolcanicVentureLevel1-v0", &several).unwrap();
     }
 }
