@@ -312,8 +312,8 @@ class Agent:
         Args:
             episodes: how many.
             seed: of the first.
-            env_id: another environment that has the agent's buttons, such as another level: an id, or a task's file. It and `rules` hold the agent to
-                that task's own budget; None: the agent's own.
+            env_id: another environment that has the agent's buttons, such as another level: an id, or a task's file.
+                It and `rules` hold the agent to that task's own budget; None: the agent's own.
             rules: "paper", "released" or "tables"; None: the agent's own.
             best: as of `load`; None: as this agent was loaded. Another than that loads the run anew.
             greedy: the same.

@@ -220,11 +220,7 @@ pub fn in_task(
         return Ok(options);
     }
     // Two tasks may have as many buttons and call them in another order.
-    let words = |space: &ActionSpace| -> Vec<String> {
-        space.names().split([' ', '|']).map(String::from).collect()
-    };
-    let has = words(&there);
-    let missing: Vec<String> = words(&known).into_iter().filter(|one| !has.contains(one)).collect();
+    let missing = there.lacking(&known);
     if !missing.is_empty() {
         return Err(format!(
             "an agent of {own} cannot act in {id}: its buttons are others, there is no {}; play it in its own scenario",

@@ -29,8 +29,8 @@ pub trait Environment: Send {
     /// Starts the episode of `seed`.
     fn reset(&mut self, seed: u64);
 
-    /// Advances by one policy step. The caller has checked the action: [`ActionSpace::check`]. After an episode's end nothing moves: reward and cost are 0,
-    /// the flags stay.
+    /// Advances by one policy step. The caller has checked the action: [`ActionSpace::check`]. After
+    /// an episode's end nothing moves: reward and cost are 0, the flags stay.
     fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step;
 
     /// The last step's amount of each cost term.

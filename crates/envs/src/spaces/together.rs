@@ -18,15 +18,24 @@ impl ActionSpace {
     /// given.
     pub(crate) fn within(self, space: Option<ActionSpace>) -> ActionSpace {
         let Some(mut space) = space else { return self };
-        let has = |name: &str| {
-            self.groups.iter().flat_map(|group| &group.buttons).any(|(own, _)| *own == name)
-        };
+        let lacking = self.lacking(&space);
         for (name, button) in space.groups.iter_mut().flat_map(|group| &mut group.buttons) {
-            if !has(name) {
+            if lacking.contains(name) {
                 *button = Buttons::default();
             }
         }
         space
+    }
+
+    /// The names of the buttons and continuous parts of another space that this one does not have.
+    #[must_use]
+    pub fn lacking(&self, other: &ActionSpace) -> Vec<&'static str> {
+        fn buttons(space: &ActionSpace) -> impl Iterator<Item = &'static str> {
+            space.groups.iter().flat_map(|group| &group.buttons).map(|(name, _)| *name)
+        }
+        let buttons = buttons(other).filter(|name| buttons(self).all(|own| own != *name));
+        let deltas = other.deltas.iter().filter(|delta| !self.deltas.contains(delta));
+        buttons.chain(deltas.map(|delta| delta.name())).collect()
     }
 
     /// The names of its parts: exclusive buttons with strokes between them, groups and continuous

@@ -27,9 +27,13 @@ impl Constraint {
     /// Its budget, with the term's name if it is of one: `50`, `lava 30`.
     #[must_use]
     pub fn label(&self) -> String {
-        self.term
-            .as_ref()
-            .map_or_else(|| self.budget.to_string(), |term| format!("{term} {}", self.budget))
+        self.named(&self.budget.to_string())
+    }
+
+    /// What is said of it, with the term's name if it is of one.
+    #[must_use]
+    pub fn named(&self, text: &str) -> String {
+        self.term.as_ref().map_or_else(|| text.to_owned(), |term| format!("{term} {text}"))
     }
 
     /// How a measured cost stands to the budget.

@@ -108,7 +108,7 @@ pub(super) fn cost_cell(group: &Group, source: Source) -> Cell {
     }
     let named = constraints.iter().map(|one| (one, of(&one.metric())));
     let named: Vec<(&Constraint, Cell)> = named.collect();
-    let text = named.iter().map(|(one, cell)| format!("{} {}", one.name(), cell.text));
+    let text = named.iter().map(|(one, cell)| one.named(&cell.text));
     let note = named.iter().map(|(_, cell)| cell.note.clone()).min().unwrap_or_default();
     Cell { note, ..Cell::text(text.collect::<Vec<_>>().join(", ")) }
 }

@@ -108,12 +108,9 @@ fn cost_cells(run: &Run) -> [Cell; 3] {
     let joined = |text: &dyn Fn(&Constraint, Option<Estimate>) -> String| {
         Cell::text(all.iter().map(|(one, cost)| text(one, *cost)).collect::<Vec<_>>().join(", "))
     };
-    let named = |one: &Constraint, text: String| {
-        one.term.as_ref().map_or_else(|| text.clone(), |term| format!("{term} {text}"))
-    };
-    let cost = joined(&|one, cost| named(one, plain(cost).text));
+    let cost = joined(&|one, cost| one.named(&plain(cost).text));
     let up_to = joined(&|one, cost| {
-        named(one, cost.map_or_else(|| "-".into(), |cost| number(cost.high())))
+        one.named(&cost.map_or_else(|| "-".into(), |cost| number(cost.high())))
     });
     let budget = joined(&|one, _| one.label());
     [Cell { mark: Mark::of(kept), ..cost }, up_to, budget]
