@@ -1,6 +1,7 @@
 //! A run in memory: worlds, samplers, learner and algorithm put together, without its directory.
 
 use std::ops::Range;
+use std::sync::{Arc, RwLock};
 use std::time::Instant;
 
 use hasard_envs::{CostTerm, EnvError, FinalObservations, Insight, VecEnv, VecOptions};
@@ -186,6 +187,10 @@ impl Session {
         let mut watch = Watch::new(&config);
         let (mut frames, mut rollouts) = (0, 0);
         let mut states: Vec<Option<SamplerState>> = vec![None; shares.len()];
+        let has_learned = matches!(
+            beginning,
+            Beginning::Weights(..) | Beginning::Agent(..) | Beginning::Lesson(_)
+        );
         match beginning {
             Beginning::Nothing => {}
             Beginning::Weights(loaded, order) => {
@@ -250,6 +255,10 @@ impl Session {
                     if config.reseeded_at(frames) {
                         sampler.reseed(Stream::new(config.seed, Purpose::Worlds, 0, 0).bits())?;
                     }
+                }
+                None if sampling.spread_out && has_learned => {
+                    let newest = RwLock::new(Arc::new(learner.publish()));
+                    sampler.play_apart(sampling.lanes, config.episode_steps, &newest)?
                 }
                 None if sampling.spread_out => {
                     sampler.spread_out(sampling.lanes, config.episode_steps)?

@@ -6,6 +6,8 @@
 //!
 //! Long because sampling, saving and restoring touch the same rows in the same order.
 
+mod first_steps;
+
 use std::ops::Range;
 use std::sync::{Arc, RwLock};
 
@@ -38,6 +40,20 @@ pub struct SamplerState {
     pub steps: u64,
     /// Cost of each constraint in each lane's episode so far; empty where no critic sees it.
     pub spent: Vec<f64>,
+}
+
+impl SamplerState {
+    /// Takes over a lane of another state of the same sampler.
+    fn take(&mut self, lane: usize, other: &SamplerState) {
+        let lanes = self.worlds.len();
+        let own = |all: usize| lane * (all / lanes)..(lane + 1) * (all / lanes);
+        self.worlds[lane] = other.worlds[lane].clone();
+        for (to, from) in self.state.iter_mut().zip(&other.state) {
+            to[own(from.len())].copy_from_slice(&from[own(from.len())]);
+        }
+        self.safety[lane] = other.safety[lane];
+        self.spent[own(other.spent.len())].copy_from_slice(&other.spent[own(other.spent.len())]);
+    }
 }
 
 /// The same lanes dealt to other samplers, in their order: what happens in a lane does not depend
@@ -175,29 +191,6 @@ impl Sampler {
     /// Keeps the states at the beginning of every trajectory of so many steps.
     pub fn cut(&mut self, trajectory_steps: usize) {
         self.trajectory_steps = trajectory_steps.max(1);
-    }
-
-    /// Puts every lane somewhere else in its first episode: of all `total` lanes of the run, each
-    /// starts after so many random steps that their episodes end spread over the time of one.
-    /// Otherwise all episodes of a scenario that always runs into the clock would end at once, and
-    /// constraints would hear of their cost once in an age.
-    pub fn spread_out(&mut self, total: usize, episode_steps: u32) -> Result<(), LearnError> {
-        let mut saved = self.save()?;
-        let action = &self.shape.action;
-        for (lane, world) in saved.worlds.iter_mut().enumerate() {
-            let number = self.first_lane + lane;
-            let steps = number as u64 * u64::from(episode_steps) / total as u64;
-            let mut stream = Stream::new(self.seed, Purpose::FirstSteps, number as u64, 0);
-            for _ in 0..steps {
-                for &size in &action.sizes {
-                    world.actions.push((stream.uniform() * size as f64) as u8);
-                }
-                for _ in 0..action.deltas {
-                    world.deltas.push((2.0 * stream.uniform() - 1.0) as f32);
-                }
-            }
-        }
-        self.restore(saved)
     }
 
     /// Where everything is between two rollouts.
