@@ -76,7 +76,7 @@ pub struct TrainArgs {
     pub threads: Option<u16>,
     /// Plain kernels: the same bits on every machine, some six times slower.
     /// HASARD_SIMD=plain|avx2|avx512 forces a family without leaving a trace in the settings;
-    /// avx512bf16 begins a run with learning.products=bfloat16
+    /// avx512bf16 and amxbf16 begin a run with learning.products=bfloat16
     #[arg(long)]
     pub portable: bool,
     /// Environments side by side  [default: 32]

@@ -143,8 +143,8 @@ pub struct BenchArgs {
     /// With --learn: the preset, but for its epochs and minibatches
     #[arg(long, default_value = "paper", requires = "learn")]
     pub preset: String,
-    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512|avx512bf16 chooses
-    /// others
+    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512|avx512bf16|amxbf16
+    /// chooses others
     #[arg(long, requires = "learn")]
     pub portable: bool,
     /// With --learn: any setting of config.json but threads, such as learning.reuse_forward=true;

@@ -1,6 +1,8 @@
 //! Which vector instructions are used. Every variant of an integer kernel gives the same bits; the
 //! plain one reads like the formula.
 
+#[cfg(all(target_arch = "x86_64", target_os = "linux"))]
+mod amx;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lookup;
 
@@ -28,6 +30,18 @@ pub enum Family {
     /// The same, but that a learner's matrices are multiplied as bfloat16 and summed as 32-bit
     /// numbers (Cooper Lake and Zen 4 onward).
     Avx512Bf16,
+    /// The same by a unit that multiplies whole tiles of matrices (AMX; Sapphire Rapids onward). It
+    /// adds up in another order.
+    AmxBf16,
+}
+
+impl Family {
+    /// It multiplies a learner's matrices as bfloat16.
+    #[inline(always)]
+    #[must_use]
+    pub const fn rounds(self) -> bool {
+        matches!(self, Family::Avx512Bf16 | Family::AmxBf16)
+    }
 }
 
 /// What integer kernels are compiled for, from narrow to wide. All give the same bits.
@@ -80,17 +94,23 @@ impl Simd {
         all
     }
 
-    /// The widest family, with products in bfloat16, if this processor has it. Nothing chooses it
-    /// but its name.
+    /// The families of this processor with products in bfloat16, the fastest last. Nothing chooses
+    /// them but their names, and a run's settings.
     #[must_use]
-    pub fn bfloat16() -> Option<Simd> {
+    pub fn bfloat16() -> Vec<Simd> {
+        let mut all = Vec::new();
         #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx512bf16") {
+        {
             let widest = Simd::widest();
-            return (widest.family == Family::Avx512)
-                .then_some(Simd { family: Family::Avx512Bf16, ..widest });
+            if widest.family == Family::Avx512 && is_x86_feature_detected!("avx512bf16") {
+                all.push(Simd { family: Family::Avx512Bf16, ..widest });
+                #[cfg(target_os = "linux")]
+                if amx::is_permitted() {
+                    all.push(Simd { family: Family::AmxBf16, ..widest });
+                }
+            }
         }
-        None
+        all
     }
 
     /// All that have a name on this processor.
@@ -125,7 +145,8 @@ impl Simd {
         Simd::available().pop().unwrap_or(Simd::PLAIN)
     }
 
-    /// The family of a name: `plain` (or `portable`), `neon`, `avx2`, `avx512` or `avx512bf16`.
+    /// The family of a name: `plain` (or `portable`), `neon`, `avx2`, `avx512`,
+    /// `avx512bf16` or `amxbf16`.
     fn named(name: &str) -> Result<Simd, SimdError> {
         let known = if name == "portable" { "plain" } else { name };
         let there = Simd::all_named().into_iter().find(|simd| simd.name() == known);
@@ -141,6 +162,7 @@ impl Simd {
             Family::Avx2 => "avx2",
             Family::Avx512 => "avx512",
             Family::Avx512Bf16 => "avx512bf16",
+            Family::AmxBf16 => "amxbf16",
         }
     }
 
@@ -265,8 +287,8 @@ mod tests {
         }
         assert_eq!(Simd::named("portable"), Ok(Simd::PLAIN));
         assert!(
-            Simd::available().iter().all(|simd| simd.family() != Family::Avx512Bf16),
-            "nothing but its name chooses it"
+            Simd::available().iter().all(|simd| !simd.family().rounds()),
+            "nothing but their names chooses them"
         );
         for name in ["", "AVX2", "sse9", "avx512\n"] {
             assert!(Simd::named(name).unwrap_err().to_string().contains("must be one of plain"));

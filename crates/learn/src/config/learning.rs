@@ -204,7 +204,7 @@ pub struct LearningConfig {
     /// the processor has.
     #[serde(default)]
     pub portable: bool,
-    /// What the factors of the networks' products are rounded to; `HASARD_SIMD=avx512bf16` begins
+    /// What the factors of the networks' products are rounded to; `HASARD_SIMD=avx512bf16` or `amxbf16` begins
     /// runs with `bfloat16`.
     #[serde(default)]
     pub products: Products,

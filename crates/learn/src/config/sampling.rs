@@ -16,7 +16,8 @@ pub struct SamplingConfig {
     /// Groups of worlds of each sampler: with 2 and world threads, one half steps while the policy
     /// works on the other.
     pub groups: usize,
-    /// Lanes start their first episode after different numbers of random steps.
+    /// Lanes start their first episode after different numbers of steps: random ones, or the
+    /// agent's where the run begins with one.
     pub spread_out: bool,
     /// Sampling and learning take turns, bit-reproducibly; otherwise they run side by side.
     pub synchronous: bool,

@@ -1,6 +1,6 @@
 //! The settings of a run, all of them.
 
-use hasard_engine::simd::{Family, Simd};
+use hasard_engine::simd::Simd;
 use serde::{Deserialize, Serialize};
 
 use crate::config::budgets::{MOST_CONSTRAINTS, usual_constraints};
@@ -300,7 +300,7 @@ impl TrainConfig {
     #[must_use]
     pub fn begun(mut self) -> TrainConfig {
         self.learning.schedule_frames.get_or_insert(self.frames);
-        let rounds = |simd: Simd| simd.family() == Family::Avx512Bf16;
+        let rounds = |simd: Simd| simd.family().rounds();
         if Simd::forced().ok().flatten().is_some_and(rounds)
             && self.device == "cpu"
             && !self.learning.portable

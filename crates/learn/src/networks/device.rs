@@ -3,7 +3,7 @@
 #[cfg(feature = "graphics")]
 use burn::tensor::Device;
 
-use hasard_engine::simd::{Family, Simd};
+use hasard_engine::simd::Simd;
 
 use crate::config::{Products, TrainConfig};
 use crate::error::LearnError;
@@ -87,18 +87,19 @@ impl ComputeDevice {
 
 /// The chosen family, or the one that multiplies as a run's settings say: a run keeps to its own.
 fn with_products(chosen: Simd, products: Products) -> Result<Simd, LearnError> {
-    let rounds = |simd: Simd| simd.family() == Family::Avx512Bf16;
+    let rounds = |simd: Simd| simd.family().rounds();
     let refuse =
         |why: String| Err(LearnError::Config(format!("learning.products is bfloat16, but {why}")));
     match products {
         Products::Float32 if rounds(chosen) => Ok(Simd::widest()),
         Products::Float32 => Ok(chosen),
-        Products::Bfloat16 => match (Simd::bfloat16(), Simd::forced()) {
+        Products::Bfloat16 => match (Simd::bfloat16().pop(), Simd::forced()) {
             (None, _) => {
                 refuse("this processor has no AVX512-BF16; train on one that has it, or begin a run with float32".into())
             }
             (Some(_), Ok(Some(forced))) if !rounds(forced) => refuse(format!("HASARD_SIMD is {forced}; leave it out")),
-            (Some(simd), _) => Ok(simd),
+            (Some(_), Ok(Some(forced))) => Ok(forced),
+            (Some(fastest), _) => Ok(fastest),
         },
     }
 }
@@ -164,7 +165,7 @@ mod tests {
         for simd in Simd::available() {
             assert_eq!(with_products(simd, Products::Float32).unwrap(), simd);
         }
-        match Simd::bfloat16() {
+        match Simd::bfloat16().pop() {
             None => {
                 let refused =
                     with_products(Simd::PLAIN, Products::Bfloat16).unwrap_err().to_string();
@@ -173,14 +174,14 @@ mod tests {
             Some(rounding) => {
                 assert_eq!(with_products(rounding, Products::Float32).unwrap(), Simd::widest());
                 match Simd::forced().unwrap() {
-                    Some(forced) if forced != rounding => {
+                    Some(forced) if !forced.family().rounds() => {
                         let refused =
                             with_products(forced, Products::Bfloat16).unwrap_err().to_string();
                         assert!(refused.contains("leave it out"), "{refused}");
                     }
-                    _ => assert_eq!(
+                    forced => assert_eq!(
                         with_products(Simd::widest(), Products::Bfloat16).unwrap(),
-                        rounding
+                        forced.unwrap_or(rounding)
                     ),
                 }
             }

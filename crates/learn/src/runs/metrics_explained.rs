@@ -39,7 +39,7 @@ pub const METRICS: &[Metric] = &[
         "kernels",
         "",
         "",
-        "Instructions that the networks were computed with: avx512bf16, avx512, avx2 or plain; or the device.",
+        "Instructions that the networks were computed with: amxbf16, avx512bf16, avx512, avx2 or plain; or the device.",
     ),
     metric("threads", "threads", "", "Threads of learner and samplers."),
     metric("wall_s", "s", "", "Seconds of work so far, those before a resume included."),

@@ -12,7 +12,7 @@
 //!
 //! Long because forward and both backward passes share one layout in memory, explained once.
 
-use hasard_engine::simd::{Family, Simd};
+use hasard_engine::simd::Simd;
 
 use crate::config::Convolution;
 use crate::networks::cpu::bfloat16::{
@@ -79,7 +79,7 @@ impl ConvolutionPlan {
     pub fn new(kernels: Simd, input: ImageShape, convolution: &Convolution) -> ConvolutionPlan {
         let output = input.after(convolution).expect("checked shape");
         let Convolution { kernel, stride, .. } = *convolution;
-        let in_blocks = kernel.is_multiple_of(stride) && kernels.family() != Family::Avx512Bf16;
+        let in_blocks = kernel.is_multiple_of(stride) && !kernels.family().rounds();
         let blocks = in_blocks.then_some(kernel / stride);
         let (grid_width, grid_height) = match blocks {
             Some(side) => (output.width - 1 + side, output.height - 1 + side),
@@ -364,7 +364,7 @@ impl ConvolutionPlan {
         weights: &mut [f32],
     ) {
         let (kernels, channels) = (self.kernels, self.output.channels);
-        if kernels.family() == Family::Avx512Bf16 {
+        if kernels.family().rounds() {
             return self.weight_gradient_of_pairs(stored, gradient, rounded, weights);
         }
         let Stored::Numbers(stored) = stored else { unreachable!("rounded only for pairs") };

@@ -1,7 +1,7 @@
 //! Weights as the products of a family read them: packed panel after panel, as numbers of 32 bits
 //! or as pairs of 16.
 
-use hasard_engine::simd::{Family, Simd};
+use hasard_engine::simd::Simd;
 
 use crate::networks::cpu::bfloat16::{Pair, pair_of, pair_rows, pair_with_zeros};
 use crate::networks::cpu::pack::{pack, pack_transposed};
@@ -55,7 +55,7 @@ impl Panels {
             "a matrix of whole runs"
         );
         let inner = source.len() / columns.max(1);
-        if kernels.family() != Family::Avx512Bf16 {
+        if !kernels.family().rounds() {
             return pack(source, inner, columns, self.numbers(source.len()));
         }
         let pairs = inner / run.max(1) * run.div_ceil(2);
@@ -77,7 +77,7 @@ impl Panels {
 
     /// As [`Panels::pack`], of the transpose: `source` has `columns` rows of `inner` columns.
     pub fn pack_transposed(&mut self, kernels: Simd, source: &[f32], inner: usize, columns: usize) {
-        if kernels.family() != Family::Avx512Bf16 {
+        if !kernels.family().rounds() {
             return pack_transposed(source, inner, columns, self.numbers(source.len()));
         }
         assert!(columns.is_multiple_of(PANEL) && source.len() == inner * columns);

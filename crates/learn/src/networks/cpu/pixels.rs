@@ -1,6 +1,6 @@
 //! From an 8-bit image to what the first layer reads.
 
-use hasard_engine::simd::{Family, Simd};
+use hasard_engine::simd::Simd;
 
 use crate::networks::cpu::bfloat16::round_pixels;
 use crate::networks::cpu::buffers::sized;
@@ -32,7 +32,7 @@ impl StoredImage {
             self.arrange(convolution, observation);
         }
         let bytes = if as_it_is { observation } else { &self.bytes };
-        if kernels.family() == Family::Avx512Bf16 {
+        if kernels.family().rounds() {
             self.rounded.resize(convolution.rounded(), 0);
             round_pixels(
                 kernels,
@@ -50,7 +50,7 @@ impl StoredImage {
 
     /// The image that was stored last.
     pub fn latest(&self, kernels: Simd) -> Stored<'_> {
-        if kernels.family() == Family::Avx512Bf16 {
+        if kernels.family().rounds() {
             Stored::Rounded(&self.rounded)
         } else {
             Stored::Numbers(&self.numbers)

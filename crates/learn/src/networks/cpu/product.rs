@@ -97,7 +97,7 @@ const BLOCK_BYTES: usize = 384 * 1024;
 /// first.
 pub(super) const fn stretch(kernels: Simd) -> usize {
     match kernels.family() {
-        Family::Avx512 | Family::Avx512Bf16 => 2048,
+        Family::Avx512 | Family::Avx512Bf16 | Family::AmxBf16 => 2048,
         Family::Avx2 | Family::Plain => 512,
     }
 }

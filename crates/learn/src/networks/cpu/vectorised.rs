@@ -25,7 +25,7 @@ macro_rules! vectorised {
                 use hasard_engine::simd::Family;
                 match kernels.family() {
                     // SAFETY: a `Simd` value proves that the processor has the instructions.
-                    Family::Avx512 | Family::Avx512Bf16 => return unsafe { avx512($($arg),*) },
+                    Family::Avx512 | Family::Avx512Bf16 | Family::AmxBf16 => return unsafe { avx512($($arg),*) },
                     // SAFETY: as for the wider family.
                     Family::Avx2 => return unsafe { avx2($($arg),*) },
                     Family::Plain => {}

@@ -7,6 +7,10 @@
 //! in sums. So bits are equal on all processors that have it, and equal to those of plain fused
 //! arithmetic wherever no such number occurs.
 //!
+//! The family of AMX adds up otherwise, as `tdpbf16ps` is documented to: of up to 16 pairs at a
+//! time the first terms apart and the second terms apart, each from zero on, then the two together,
+//! and that to the sum so far. Its bits are equal on all processors that have it.
+//!
 //! What is rounded is what a product reads: weights, activations and gradients themselves stay
 //! numbers of 32 bits, and all other arithmetic is that of the other families.
 
@@ -14,7 +18,7 @@ use crate::networks::cpu::tile::Tile;
 use crate::networks::cpu::vectorised::{kernel_files, vectorised};
 use hasard_engine::simd::{Family, Simd};
 
-kernel_files!(avx512);
+kernel_files!(amx, avx512);
 mod number;
 #[cfg(test)]
 mod tests;
@@ -25,7 +29,7 @@ use number::{normalised, pair, rounded};
 /// Rounds numbers one by one.
 pub fn round(kernels: Simd, from: &[f32], to: &mut [u16]) {
     #[cfg(target_arch = "x86_64")]
-    if kernels.family() == Family::Avx512Bf16 {
+    if kernels.family().rounds() {
         // SAFETY: a `Simd` value proves that the processor has the instructions.
         return unsafe { avx512::round(from, to) };
     }
@@ -43,7 +47,7 @@ vectorised! {
 /// 8-bit pixels to normalised and rounded numbers: `clamp(pixel * scale + shift, -5, 5)`.
 pub fn round_pixels(kernels: Simd, pixels: &[u8], scale: &[f32], shift: &[f32], out: &mut [u16]) {
     #[cfg(target_arch = "x86_64")]
-    if kernels.family() == Family::Avx512Bf16 {
+    if kernels.family().rounds() {
         // SAFETY: a `Simd` value proves that the processor has the instructions.
         return unsafe { avx512::round_pixels(pixels, scale, shift, out) };
     }
@@ -115,6 +119,11 @@ pub(super) unsafe fn run(
     #[cfg(target_arch = "x86_64")]
     {
         use crate::networks::cpu::tile::Ahead;
+        if kernels.family() == Family::AmxBf16 {
+            // SAFETY: as the caller promised; a `Simd` value proves that the processor has the
+            // instructions.
+            return unsafe { amx::tile_of(tile, height, left, right, out) };
+        }
         assert!(kernels.family() == Family::Avx512Bf16, "a product of pairs by {kernels}");
         let next = right.wrapping_add(tile.next);
         const LEFT: u8 = Ahead::LeftHalf as u8;

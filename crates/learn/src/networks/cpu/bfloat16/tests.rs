@@ -2,6 +2,7 @@ use super::super::panels::Panels;
 use super::super::product::tests::noise;
 use super::super::product::{
     Axis, Grouped, Left, Right, Size, add_to_overlapping_rows, multiply_grouped, multiply_panels,
+    stretches,
 };
 use super::*;
 use std::io::Write;
@@ -81,11 +82,25 @@ fn numbers_are_rounded_to_the_nearest_and_to_even() {
     assert_eq!((nearest(257.0), nearest(259.0), nearest(258.0)), (256.0, 260.0, 258.0));
 }
 
-/// One number of a product by the definition above.
-fn sum(terms: &[(f32, f32)], start: f32) -> f32 {
-    terms.chunks(2).fold(start, |sum, pair| {
-        let sum = pair.get(1).map_or(sum, |(a, b)| nearest(*a).mul_add(nearest(*b), sum));
-        nearest(pair[0].0).mul_add(nearest(pair[0].1), sum)
+/// One number of a product by the definition above: of terms that are walked at once.
+fn sum(kernels: Simd, terms: &[(f32, f32)], start: f32) -> f32 {
+    let add = |sum: f32, (a, b): &(f32, f32)| nearest(*a).mul_add(nearest(*b), sum);
+    if kernels.family() == Family::AmxBf16 {
+        return terms.chunks(32).fold(start, |sum, pairs| {
+            let firsts = pairs.iter().step_by(2).fold(0.0, add);
+            let seconds = pairs.iter().skip(1).step_by(2).fold(0.0, add);
+            sum + (firsts + seconds)
+        });
+    }
+    terms
+        .chunks(2)
+        .fold(start, |sum, pair| add(pair.get(1).map_or(sum, |second| add(sum, second)), &pair[0]))
+}
+
+/// The same where more terms are summed than are walked at once.
+fn long_sum(kernels: Simd, terms: &[(f32, f32)], start: f32) -> f32 {
+    stretches(kernels, terms.len().div_ceil(2)).fold(start, |so_far, (first, pairs)| {
+        sum(kernels, &terms[2 * first..(2 * (first + pairs)).min(terms.len())], so_far)
     })
 }
 
@@ -94,9 +109,12 @@ fn sum(terms: &[(f32, f32)], start: f32) -> f32 {
 /// factors themselves.
 #[test]
 fn products_are_what_is_defined_and_near_those_of_numbers() {
-    let Some(kernels) = bfloat16() else { return };
-    for rows in [1, 2, 5, 11, 12, 13, 16, 40] {
-        for (columns, inner) in [(32, 1), (32, 2), (64, 9), (96, 130), (32, 4501)] {
+    let cases = [1, 2, 5, 11, 12, 13, 16, 17, 31, 32, 33, 40].into_iter().flat_map(|rows| {
+        [(32, 1), (32, 2), (64, 9), (96, 130), (32, 4501)]
+            .map(|(columns, inner)| (rows, columns, inner))
+    });
+    for kernels in bfloat16() {
+        for (rows, columns, inner) in cases.clone() {
             let (left, matrix) = (noise(rows * inner, 1), noise(inner * columns, 2));
             let mut panels = Panels::default();
             panels.pack(kernels, &matrix, inner, columns);
@@ -130,7 +148,7 @@ fn products_are_what_is_defined_and_near_those_of_numbers() {
                         .collect();
                     assert_eq!(
                         out[at].to_bits(),
-                        sum(&terms, start).to_bits(),
+                        long_sum(kernels, &terms, start).to_bits(),
                         "{size:?} row {row} column {column}"
                     );
                     let product = |of: fn(f32) -> f32| -> (f64, f64) {
@@ -163,7 +181,10 @@ fn products_are_what_is_defined_and_near_those_of_numbers() {
 /// the result, as its gradient writes it.
 #[test]
 fn products_in_groups_and_over_overlapping_rows_are_what_is_defined() {
-    let Some(kernels) = bfloat16() else { return };
+    bfloat16().into_iter().for_each(groups_and_overlapping_rows);
+}
+
+fn groups_and_overlapping_rows(kernels: Simd) {
     let (image, columns) = (noise(400, 5), 64);
     let (rows, inner) = (
         Axis { count: 5, stride: 6, groups: 3, group_stride: 80 },
@@ -198,7 +219,9 @@ fn products_in_groups_and_over_overlapping_rows_are_what_is_defined() {
             let terms: Vec<(f32, f32)> = (0..24)
                 .map(|k| (image[start + k / 8 * 40 + k % 8], matrix[k * columns + column]))
                 .collect();
-            assert_eq!(found.to_bits(), sum(&terms, 0.0).to_bits(), "row {row} column {column}");
+            // No pair and no tile joins two groups of the inner dimension.
+            let expected = terms.chunks(8).fold(0.0, |so_far, group| sum(kernels, group, so_far));
+            assert_eq!(found.to_bits(), expected.to_bits(), "row {row} column {column}, {kernels}");
         }
     }
     let (rows, inner) = (Axis::plain(15, 10), Axis::plain(4, 2));
@@ -216,16 +239,16 @@ fn products_in_groups_and_over_overlapping_rows_are_what_is_defined() {
         for column in 0..columns {
             let terms: Vec<(f32, f32)> =
                 (0..8).map(|k| (image[row * 10 + k], matrix[k * columns + column])).collect();
-            expected[row * 32 + column] += sum(&terms, 0.0);
+            expected[row * 32 + column] += sum(kernels, &terms, 0.0);
         }
     }
     assert_eq!(out, expected);
 }
 
-/// The kernels of bfloat16, or a word that this processor has none.
-fn bfloat16() -> Option<Simd> {
+/// The families of bfloat16, or a word that this processor has none.
+fn bfloat16() -> Vec<Simd> {
     let kernels = Simd::bfloat16();
-    if kernels.is_none() {
+    if kernels.is_empty() {
         // Past the capture of the test runner: ./check counts it.
         let _ = writeln!(std::io::stderr(), "skipped: this processor has no products in bfloat16");
     }

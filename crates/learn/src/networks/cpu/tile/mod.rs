@@ -23,6 +23,7 @@ use hasard_engine::simd::{Family, Simd};
 /// Most rows of a tile: as many as leave their sums in registers.
 pub(super) const fn tallest(kernels: Simd) -> usize {
     match kernels.family() {
+        Family::AmxBf16 => 32,
         Family::Avx512 | Family::Avx512Bf16 => 12,
         Family::Avx2 => 6,
         Family::Plain => 4,
@@ -73,7 +74,9 @@ impl Tile {
         }
         match kernels.family() {
             #[cfg(target_arch = "x86_64")]
-            Family::Avx512 | Family::Avx512Bf16 => heights!(avx512: 1 2 3 4 5 6 7 8 9 10 11 12),
+            Family::Avx512 | Family::Avx512Bf16 | Family::AmxBf16 => {
+                heights!(avx512: 1 2 3 4 5 6 7 8 9 10 11 12)
+            }
             #[cfg(target_arch = "x86_64")]
             Family::Avx2 => heights!(avx2: 1 2 3 4 5 6),
             _ => heights!(scalar: 1 2 3 4),
