@@ -77,6 +77,7 @@ pub fn sum_outer_products(
         unsafe { u16::run(tile, kernels, height, left.cast(), right, out) }
     };
     sum_packed(kernels, &inputs, 0..rows.len(), &sums, columns, out, &mut workspace.pairs, run);
+    u16::end(kernels);
 }
 
 /// Some columns of rows, two rows together.

@@ -144,6 +144,9 @@ pub(super) trait Factor: Copy {
         right: *const Self::Right,
         out: *mut f32,
     );
+    /// Ends a product, after its last tile.
+    #[inline(always)]
+    fn end(_kernels: Simd) {}
 }
 
 impl Factor for f32 {
@@ -177,6 +180,10 @@ impl Factor for u16 {
     ) {
         // SAFETY: as the caller promised.
         unsafe { bfloat16::run(tile, kernels, height, left, right, out) }
+    }
+    #[inline(always)]
+    fn end(kernels: Simd) {
+        bfloat16::end(kernels);
     }
 }
 
@@ -355,6 +362,7 @@ pub(super) fn multiply_grouped<T: Factor>(
             }
         }
     }
+    T::end(kernels);
 }
 
 /// Inner indices that are walked at once: `length` of each of `parts` groups, from the index
@@ -442,6 +450,7 @@ pub(super) fn add_to_overlapping_rows<T: Factor>(
             }
         }
     }
+    T::end(kernels);
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@
 //! code of this program is compiled for the unit.
 
 use std::arch::asm;
+use std::cell::Cell;
 use std::arch::x86_64::{
     __m512i, _mm512_add_ps, _mm512_loadu_ps, _mm512_maskz_loadu_epi32, _mm512_setzero_si512,
     _mm512_shuffle_i32x4, _mm512_storeu_ps, _mm512_storeu_si512, _mm512_unpackhi_epi32,
@@ -31,11 +32,48 @@ struct Layout {
     rows: [u8; 16],
 }
 
+thread_local! {
+    /// Upper rows, lower rows and pairs that this thread's registers are laid out for; zeros where
+    /// the unit is not in use.
+    static LAID_OUT: Cell<[u8; 3]> = const { Cell::new([0; 3]) };
+}
+
+/// Lays the registers out, if they are not yet: it takes as long as eight products. They are zero
+/// afterwards, or hold what they held.
+#[inline]
+fn lay_out(upper: usize, lower: usize, pairs: usize) {
+    let wanted = [upper as u8, lower as u8, pairs as u8];
+    if LAID_OUT.replace(wanted) == wanted {
+        return;
+    }
+    let mut layout =
+        Layout { palette: 1, start_row: 0, reserved: [0; 14], row_bytes: [0; 16], rows: [0; 16] };
+    let (sums, left, right) = ([upper, upper, lower, lower], [upper, lower], [pairs, pairs]);
+    let rows = sums.into_iter().chain(left).chain(right);
+    for (register, rows) in rows.enumerate().filter(|&(_, rows)| rows > 0) {
+        let numbers = if matches!(register, 4 | 5) { pairs } else { SIDE };
+        layout.rows[register] = rows as u8;
+        layout.row_bytes[register] = 4 * numbers as u16;
+    }
+    // SAFETY: the layout is one that the processor allows: at most 16 rows of at most 64 bytes.
+    unsafe {
+        asm!("ldtilecfg [{}]", in(reg) &raw const layout, options(nostack, readonly, preserves_flags));
+    }
+}
+
+/// Gives the registers back, so that the system need not keep them when this thread rests.
+pub fn release() {
+    if LAID_OUT.replace([0; 3]) != [0; 3] {
+        // SAFETY: they were laid out by this thread, so the processor has them.
+        unsafe { asm!("tilerelease", options(nostack, nomem, preserves_flags)) };
+    }
+}
+
 /// A factor's tile, put together.
 #[repr(C, align(64))]
 struct Gathered([[Pair; SIDE]; SIDE]);
 
-/// Computes a tile of up to 32 rows.
+/// Computes a tile of up to 32 rows. After the last of a product comes [`release`].
 ///
 /// # Safety
 /// All elements of the tile must lie inside the allocations behind the pointers.
@@ -77,6 +115,13 @@ macro_rules! store {
     };
 }
 
+/// Clears a register.
+macro_rules! zero {
+    ($register:literal) => {
+        asm!(concat!("tilezero ", $register), options(nostack, nomem, preserves_flags))
+    };
+}
+
 /// Adds the product of two registers to a third.
 macro_rules! multiply {
     ($sums:literal, $left:literal, $right:literal) => {
@@ -99,24 +144,7 @@ unsafe fn rows<const LOWER: bool>(
 ) {
     let at_once = tile.inner.min(SIDE);
     let (upper, lower) = (height.min(SIDE), height.saturating_sub(SIDE));
-    let mut layout =
-        Layout { palette: 1, start_row: 0, reserved: [0; 14], row_bytes: [0; 16], rows: [0; 16] };
-    for (register, (rows, numbers)) in [
-        (upper, SIDE),
-        (upper, SIDE),
-        (lower, SIDE),
-        (lower, SIDE),
-        (upper, at_once),
-        (lower, at_once),
-        (at_once, SIDE),
-        (at_once, SIDE),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        layout.rows[register] = rows as u8;
-        layout.row_bytes[register] = if rows > 0 { 4 * numbers as u16 } else { 0 };
-    }
+    lay_out(upper, lower, at_once);
     let out_bytes = 4 * tile.out_stride;
     let (right_bytes, side_by_side) = (4 * tile.right_inner, tile.left_inner == 2);
     let lower_left = SIDE * tile.row_stride;
@@ -124,13 +152,19 @@ unsafe fn rows<const LOWER: bool>(
     // for, and from memory of this function; those without rows are not touched. A product of two
     // registers touches no memory.
     unsafe {
-        asm!("ldtilecfg [{}]", in(reg) &raw const layout, options(nostack, readonly, preserves_flags));
         if tile.finish == Finish::Continue {
             load!("tmm0", out, out_bytes);
             load!("tmm1", out.add(SIDE), out_bytes);
             if LOWER {
                 load!("tmm2", out.add(SIDE * tile.out_stride), out_bytes);
                 load!("tmm3", out.add(SIDE * tile.out_stride + SIDE), out_bytes);
+            }
+        } else {
+            zero!("tmm0");
+            zero!("tmm1");
+            if LOWER {
+                zero!("tmm2");
+                zero!("tmm3");
             }
         }
         let (mut part, mut right) = (left, right);
@@ -213,7 +247,6 @@ unsafe fn rows<const LOWER: bool>(
                 store!("tmm3", out.add(SIDE * tile.out_stride + SIDE), out_bytes);
             }
         }
-        asm!("tilerelease", options(nostack, nomem, preserves_flags));
     }
 }
 

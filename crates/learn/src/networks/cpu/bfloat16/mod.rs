@@ -102,6 +102,16 @@ pub(super) fn halves(pairs: &[Pair]) -> &[u16] {
     unsafe { std::slice::from_raw_parts(pairs.as_ptr().cast::<u16>(), 2 * pairs.len()) }
 }
 
+/// Ends a product: what a unit keeps from tile to tile is given back.
+#[inline]
+pub(super) fn end(kernels: Simd) {
+    #[cfg(target_arch = "x86_64")]
+    if kernels.family() == Family::AmxBf16 {
+        amx::release();
+    }
+    let _ = kernels;
+}
+
 /// Computes a tile of some height: an inner index is a pair, which the left factor has side by
 /// side.
 ///
