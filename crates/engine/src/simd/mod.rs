@@ -98,6 +98,7 @@ impl Simd {
     /// them but their names, and a run's settings.
     #[must_use]
     pub fn bfloat16() -> Vec<Simd> {
+        #[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut, reason = "x86-64 adds to it"))]
         let mut all = Vec::new();
         #[cfg(target_arch = "x86_64")]
         {
