@@ -110,9 +110,13 @@ fn read_actions(path: &Path) -> Result<Vec<(String, Command)>, Failure> {
     let text = String::from_utf8(bytes).map_err(|_| {
         Failure::bad(format!("{name}: not text; give a CSV file with an 'action' column"))
     })?;
-    let mut lines = text.lines();
+    // As spreadsheets write it: a mark of UTF-8 in front, and quotes about fields.
+    let mut lines = text.trim_start_matches('\u{feff}').lines();
+    let fields = |line: &'_ str| -> Vec<String> {
+        line.split(',').map(|field| field.trim().trim_matches('"').trim().to_string()).collect()
+    };
     let header = lines.next().unwrap_or_default();
-    let column = header.split(',').position(|field| field.trim() == "action");
+    let column = fields(header).iter().position(|field| field == "action");
     let column = column.ok_or_else(|| {
         Failure::bad(format!(
             "{name}: its first line names no 'action' column; add a header line such as tic,action"
@@ -120,21 +124,21 @@ fn read_actions(path: &Path) -> Result<Vec<(String, Command)>, Failure> {
     })?;
     let mut actions = Vec::new();
     for (number, line) in lines.enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let action = line.split(',').nth(column).map(str::trim);
+        let action = fields(line).into_iter().nth(column);
         let action = action.ok_or_else(|| {
             Failure::bad(format!(
                 "{name} line {}: no 'action' field; every line needs one",
                 number + 2
             ))
         })?;
-        match action {
+        match action.as_str() {
             "start" => {}
             "FINISHED" => break,
             _ => {
-                let command = parse_command(action).map_err(|error| {
+                let command = parse_command(&action).map_err(|error| {
                     Failure::bad(format!("{name} line {}: {error}", number + 2))
                 })?;
-                actions.push((action.to_string(), command));
+                actions.push((action, command));
             }
         }
     }
@@ -183,4 +187,25 @@ fn six_places(value: f64) -> String {
     let trimmed = text.trim_end_matches('0');
     let text = if trimmed.ends_with('.') { format!("{trimmed}0") } else { trimmed.to_string() };
     if text == "-0.0" { "0.0".into() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn actions_are_read_as_spreadsheets_write_them() {
+        let file = std::env::temp_dir().join(format!("hasard-trace-{}.csv", std::process::id()));
+        let read = |text: &str| {
+            std::fs::write(&file, text).unwrap();
+            let actions = read_actions(&file).ok().unwrap();
+            actions.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+        };
+        let plain = read("tic,action\n0,start\n1,MOVE_FORWARD\n2,ATTACK\n3,FINISHED\n");
+        assert_eq!(plain, ["MOVE_FORWARD", "ATTACK"]);
+        let spreadsheet =
+            "\u{feff}\"tic\",\"action\"\r\n\"1\",\"MOVE_FORWARD\"\r\n2,\"ATTACK\"\r\n";
+        assert_eq!(read(spreadsheet), plain);
+        std::fs::remove_file(file).unwrap();
+    }
 }

@@ -44,6 +44,14 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
                     .iter()
                     .any(|when| when.spawn.iter().any(|named| usize::from(*named) == index))
         };
+        let idle = |plan: &Plan| plan.spawns.get(index).and_then(|spawn| spawn.idle);
+        if let Some((key, at)) = idle(first).filter(|_| plans.iter().all(|one| idle(one).is_some()))
+        {
+            mistakes.warn(
+                at,
+                format!("`{key}` has no effect without `every`, the tics between two supplies"),
+            );
+        }
         if !plans.iter().any(used) {
             mistakes.warn(
                 spawn.at,

@@ -32,6 +32,11 @@ impl<'n> Fields<'n> {
         self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
     }
 
+    /// Where a field stands, if it is there; it counts as read only once its value is asked for.
+    pub fn place_of(&self, key: &str) -> Option<usize> {
+        self.entries.iter().find(|entry| entry.key == key).map(|entry| entry.at)
+    }
+
     /// A whole number.
     pub fn whole(
         &mut self,

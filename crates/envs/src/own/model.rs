@@ -198,6 +198,8 @@ pub(super) struct Spawn {
     pub every: u32,
     pub first: u32,
     pub each: u32,
+    /// A field about supplies, and where it stands, though there are none.
+    pub idle: Option<(&'static str, usize)>,
     pub place: Place,
     pub height: Height,
     /// Inside rock too.

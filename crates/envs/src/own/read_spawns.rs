@@ -55,6 +55,10 @@ fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
     let count = whole("count", &mut fields, 0, 500, mistakes).unwrap_or(u32::from(every == 0));
     let first = whole("first", &mut fields, 0, 1_000_000, mistakes).unwrap_or(every);
     let each = whole("each", &mut fields, 0, 100, mistakes).unwrap_or(1);
+    let idle = ["first", "each"]
+        .into_iter()
+        .find_map(|key| fields.place_of(key).map(|at| (key, at)))
+        .filter(|_| every == 0);
     let place =
         fields.node("in").and_then(|node| place(node, zones, mistakes)).unwrap_or(Place::Free);
     let height = height(&mut fields, mistakes);
@@ -74,6 +78,10 @@ fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
             "`goal`, `patrol` and `speed` are for monsters; this thing lies where it is",
         );
     }
+    let shot_at = |(kind, _): &(ActorKind, u32)| kind.info().flags.any(ActorFlags::SHOOTABLE);
+    if let Some(at) = fields.place_of("health").filter(|_| !kinds.iter().any(shot_at)) {
+        mistakes.warn(at, "`health` has no effect: nothing of this [[spawn]] can be shot");
+    }
     fields.finish(mistakes);
     Spawn {
         name: name.map(|(name, _)| name.to_string()),
@@ -83,6 +91,7 @@ fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
         every,
         first,
         each,
+        idle,
         place,
         height,
         rock,

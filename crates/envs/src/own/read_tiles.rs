@@ -110,6 +110,9 @@ pub(super) fn generated(
     if heights[0] > heights[1] {
         mistakes.add(node.at, "heights = [lowest, highest]: the lower one comes first");
     }
+    if let Some(kind) = kind {
+        warn_of_others(&fields, kind, mistakes);
+    }
     fields.finish(mistakes);
     let kind = kind?;
     if kind == GenerateKind::Maze && (columns.is_multiple_of(2) || rows.is_multiple_of(2)) {
@@ -128,4 +131,19 @@ pub(super) fn generated(
         kinds,
         generate: Some(Generate { kind, share, room, loops, heights, train_seeds }),
     })
+}
+
+/// Warns of fields that are for other kinds of maps.
+fn warn_of_others(fields: &Fields<'_>, kind: GenerateKind, mistakes: &mut Mistakes) {
+    use GenerateKind::{Columns, Maze, Platforms, Rooms};
+    for (key, kinds, names) in [
+        ("loops", &[Maze][..], "a maze"),
+        ("room", &[Rooms], "rooms"),
+        ("share", &[Columns, Platforms], "columns and platforms"),
+        ("heights", &[Platforms], "platforms"),
+    ] {
+        if let Some(at) = fields.place_of(key).filter(|_| !kinds.contains(&kind)) {
+            mistakes.warn(at, format!("`{key}` has no effect here: it is for {names}"));
+        }
+    }
 }

@@ -350,6 +350,23 @@ fn no_room_for_the_agent_is_warned_of() {
 }
 
 #[test]
+fn fields_without_effect_are_warned_of() {
+    let warned = |rest: &str, words: &str| {
+        let checked = check(&corridor(rest));
+        assert!(checked.can_be_played(), "{:#?}", checked.mistakes);
+        checked.mistakes.iter().any(|one| one.warning && one.text.contains(words))
+    };
+    let spawn = |rest: &str| format!("[[spawn]]\nkind = \"Clip\"\n{rest}\n");
+    assert!(warned(&spawn("each = 3"), "`each` has no effect without `every`"));
+    assert!(!warned(&spawn("each = 3\nevery = 35"), "no effect"));
+    assert!(warned(&spawn("health = 30"), "`health` has no effect"));
+    assert!(!warned("[[spawn]]\nkind = \"ZombieMan\"\nhealth = 30\n", "no effect"));
+    let maze = "[levels.2.map.generate]\nkind = \"maze\"\n";
+    assert!(warned(&format!("{maze}share = 0.3\n"), "`share` has no effect here"));
+    assert!(!warned(&format!("{maze}loops = 0.3\n"), "no effect"));
+}
+
+#[test]
 fn a_map_too_wide_and_a_zone_called_free_are_refused_at_their_place() {
     let wide =
         corridor("").replace("[map]\n", "[map]\ntile = 512\n").replace("#####", &"#".repeat(32));
