@@ -132,6 +132,18 @@ macro_rules! multiply {
     };
 }
 
+/// Loads or stores the sums of a tile whose rows are `$stride` numbers apart.
+macro_rules! sums {
+    ($do:ident, $at:expr, $stride:expr, $lower:expr) => {
+        $do!("tmm0", $at, 4 * $stride);
+        $do!("tmm1", $at.add(SIDE), 4 * $stride);
+        if $lower {
+            $do!("tmm2", $at.add(SIDE * $stride), 4 * $stride);
+            $do!("tmm3", $at.add(SIDE * $stride + SIDE), 4 * $stride);
+        }
+    };
+}
+
 /// Registers 0 to 3 are sums (upper rows left and right, lower rows left and right), 4 and 5 the
 /// left factor's rows, 6 and 7 the right factor's columns.
 #[target_feature(enable = "avx512f")]
@@ -145,20 +157,12 @@ unsafe fn rows<const LOWER: bool>(
     let at_once = tile.inner.min(SIDE);
     let (upper, lower) = (height.min(SIDE), height.saturating_sub(SIDE));
     lay_out(upper, lower, at_once);
-    let out_bytes = 4 * tile.out_stride;
-    let (right_bytes, side_by_side) = (4 * tile.right_inner, tile.left_inner == 2);
-    let lower_left = SIDE * tile.row_stride;
     // SAFETY: registers are loaded from elements of the tile, whose addresses the caller vouches
     // for, and from memory of this function; those without rows are not touched. A product of two
     // registers touches no memory.
     unsafe {
         if tile.finish == Finish::Continue {
-            load!("tmm0", out, out_bytes);
-            load!("tmm1", out.add(SIDE), out_bytes);
-            if LOWER {
-                load!("tmm2", out.add(SIDE * tile.out_stride), out_bytes);
-                load!("tmm3", out.add(SIDE * tile.out_stride + SIDE), out_bytes);
-            }
+            sums!(load, out, tile.out_stride, LOWER);
         } else {
             zero!("tmm0");
             zero!("tmm1");
@@ -170,19 +174,28 @@ unsafe fn rows<const LOWER: bool>(
         let (mut part, mut right) = (left, right);
         for _ in 0..tile.parts {
             let mut left = part;
-            for _ in 0..tile.inner / at_once {
-                load!("tmm6", right, right_bytes);
-                load!("tmm7", right.add(SIDE), right_bytes);
-                if side_by_side {
+            for first in (0..tile.inner).step_by(at_once) {
+                let count = at_once.min(tile.inner - first);
+                let whole = count == at_once;
+                if whole {
+                    load!("tmm6", right, 4 * tile.right_inner);
+                    load!("tmm7", right.add(SIDE), 4 * tile.right_inner);
+                } else {
+                    let [first, second] = [0, SIDE].map(|half| padded(right.add(half), tile, count));
+                    load!("tmm6", &raw const first, 4 * SIDE);
+                    load!("tmm7", &raw const second, 4 * SIDE);
+                }
+                let lower_left = left.wrapping_add(SIDE * tile.row_stride);
+                if whole && tile.left_inner == 2 {
                     load!("tmm4", left, 2 * tile.row_stride);
                     if LOWER {
-                        load!("tmm5", left.add(lower_left), 2 * tile.row_stride);
+                        load!("tmm5", lower_left, 2 * tile.row_stride);
                     }
                 } else {
-                    let gathered = gather(left, tile, upper, at_once);
+                    let gathered = gather(left, tile, upper, count);
                     load!("tmm4", &raw const gathered, 4 * SIDE);
                     if LOWER {
-                        let gathered = gather(left.add(lower_left), tile, lower, at_once);
+                        let gathered = gather(lower_left, tile, lower, count);
                         load!("tmm5", &raw const gathered, 4 * SIDE);
                     }
                 }
@@ -192,62 +205,41 @@ unsafe fn rows<const LOWER: bool>(
                     multiply!("tmm2", "tmm5", "tmm6");
                     multiply!("tmm3", "tmm5", "tmm7");
                 }
-                left = left.wrapping_add(at_once * tile.left_inner);
-                right = right.wrapping_add(at_once * tile.right_inner);
-            }
-            let rest = tile.inner % at_once;
-            if rest > 0 {
-                // Zeros beside the rest make a whole register of it.
-                let [mut first, mut second] = [const { Gathered([[0; SIDE]; SIDE]) }; 2];
-                for (k, (first, second)) in
-                    first.0.iter_mut().zip(&mut second.0).take(rest).enumerate()
-                {
-                    let row = right.add(k * tile.right_inner);
-                    first.as_mut_ptr().copy_from_nonoverlapping(row, SIDE);
-                    second.as_mut_ptr().copy_from_nonoverlapping(row.add(SIDE), SIDE);
-                }
-                load!("tmm6", &raw const first, 4 * SIDE);
-                load!("tmm7", &raw const second, 4 * SIDE);
-                let gathered = gather(left, tile, upper, rest);
-                load!("tmm4", &raw const gathered, 4 * SIDE);
-                multiply!("tmm0", "tmm4", "tmm6");
-                multiply!("tmm1", "tmm4", "tmm7");
-                if LOWER {
-                    let gathered = gather(left.add(lower_left), tile, lower, rest);
-                    load!("tmm5", &raw const gathered, 4 * SIDE);
-                    multiply!("tmm2", "tmm5", "tmm6");
-                    multiply!("tmm3", "tmm5", "tmm7");
-                }
-                right = right.wrapping_add(rest * tile.right_inner);
+                left = left.wrapping_add(count * tile.left_inner);
+                right = right.wrapping_add(count * tile.right_inner);
             }
             part = part.wrapping_add(tile.left_part);
         }
-        if tile.finish == Finish::Add {
-            let mut sums = [[0f32; 2 * SIDE]; 2 * SIDE];
-            let to = sums.as_mut_ptr().cast::<f32>();
-            let bytes = 4 * 2 * SIDE;
-            store!("tmm0", to, bytes);
-            store!("tmm1", to.add(SIDE), bytes);
-            if LOWER {
-                store!("tmm2", to.add(SIDE * 2 * SIDE), bytes);
-                store!("tmm3", to.add(SIDE * 2 * SIDE + SIDE), bytes);
-            }
-            for (row, sums) in sums.iter().take(height).enumerate() {
-                for half in [0, SIDE] {
-                    let to = out.add(row * tile.out_stride + half);
-                    let sum = _mm512_loadu_ps(sums.as_ptr().add(half));
-                    _mm512_storeu_ps(to, _mm512_add_ps(_mm512_loadu_ps(to), sum));
-                }
-            }
-        } else {
-            store!("tmm0", out, out_bytes);
-            store!("tmm1", out.add(SIDE), out_bytes);
-            if LOWER {
-                store!("tmm2", out.add(SIDE * tile.out_stride), out_bytes);
-                store!("tmm3", out.add(SIDE * tile.out_stride + SIDE), out_bytes);
+        if tile.finish != Finish::Add {
+            sums!(store, out, tile.out_stride, LOWER);
+            return;
+        }
+        const WIDTH: usize = 2 * SIDE;
+        let mut found = [[0f32; WIDTH]; 2 * SIDE];
+        sums!(store, found.as_mut_ptr().cast::<f32>(), WIDTH, LOWER);
+        for (row, found) in found.iter().take(height).enumerate() {
+            for half in [0, SIDE] {
+                let to = out.add(row * tile.out_stride + half);
+                let sum = _mm512_loadu_ps(found.as_ptr().add(half));
+                _mm512_storeu_ps(to, _mm512_add_ps(_mm512_loadu_ps(to), sum));
             }
         }
     }
+}
+
+/// The last pairs of the right factor, 16 columns of them, with zeros beside them.
+///
+/// # Safety
+/// All of them must lie inside the allocation behind the pointer.
+unsafe fn padded(right: *const Pair, tile: Tile, count: usize) -> Gathered {
+    let mut padded = Gathered([[0; SIDE]; SIDE]);
+    for (k, row) in padded.0.iter_mut().take(count).enumerate() {
+        // SAFETY: as the caller promised.
+        unsafe {
+            row.as_mut_ptr().copy_from_nonoverlapping(right.add(k * tile.right_inner), SIDE);
+        }
+    }
+    padded
 }
 
 /// Some rows of the left factor, `count` pairs of each and zeros behind them.

@@ -245,6 +245,35 @@ fn groups_and_overlapping_rows(kernels: Simd) {
     assert_eq!(out, expected);
 }
 
+/// Rows side by side and pairs far apart, as the gradient of weights reads its left factor; more
+/// pairs than a tile has, and rows of two tiles.
+#[test]
+fn products_of_pairs_that_stand_apart_are_what_is_defined() {
+    for kernels in bfloat16() {
+        let (count, pairs, columns) = (21, 37, 32);
+        let (left, matrix) = (noise(2 * count * pairs, 8), noise(2 * pairs * columns, 9));
+        let mut halves = vec![0; left.len()];
+        round(kernels, &left, &mut halves);
+        let mut right = vec![0; pairs * columns];
+        for (k, right) in right.chunks_exact_mut(columns).enumerate() {
+            let (first, second) = matrix[2 * k * columns..][..2 * columns].split_at(columns);
+            pair_rows(kernels, first, second, right);
+        }
+        let (rows, inner) = (Axis::plain(count, 2), Axis::plain(pairs, 2 * count));
+        let factor = Grouped { data: &halves[..], rows, inner };
+        let mut out = vec![0.0; count * columns];
+        let right = Right::rows(&right, columns);
+        multiply_grouped(kernels, factor, right, columns, &mut out, columns, false);
+        for (at, found) in out.iter().enumerate() {
+            let (row, column) = (at / columns, at % columns);
+            let terms: Vec<(f32, f32)> = (0..2 * pairs)
+                .map(|k| (left[k / 2 * 2 * count + 2 * row + k % 2], matrix[k * columns + column]))
+                .collect();
+            assert_eq!(found.to_bits(), sum(kernels, &terms, 0.0).to_bits(), "{kernels}: {at}");
+        }
+    }
+}
+
 /// The families of bfloat16, or a word that this processor has none.
 fn bfloat16() -> Vec<Simd> {
     let kernels = Simd::bfloat16();
