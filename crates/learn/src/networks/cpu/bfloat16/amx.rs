@@ -9,12 +9,12 @@
 //! code of this program is compiled for the unit.
 
 use std::arch::asm;
-use std::cell::Cell;
 use std::arch::x86_64::{
     __m512i, _mm512_add_ps, _mm512_loadu_ps, _mm512_maskz_loadu_epi32, _mm512_setzero_si512,
     _mm512_shuffle_i32x4, _mm512_storeu_ps, _mm512_storeu_si512, _mm512_unpackhi_epi32,
     _mm512_unpackhi_epi64, _mm512_unpacklo_epi32, _mm512_unpacklo_epi64,
 };
+use std::cell::Cell;
 
 use crate::networks::cpu::bfloat16::number::Pair;
 use crate::networks::cpu::tile::{Finish, Tile};
@@ -181,7 +181,8 @@ unsafe fn rows<const LOWER: bool>(
                     load!("tmm6", right, 4 * tile.right_inner);
                     load!("tmm7", right.add(SIDE), 4 * tile.right_inner);
                 } else {
-                    let [first, second] = [0, SIDE].map(|half| padded(right.add(half), tile, count));
+                    let [first, second] =
+                        [0, SIDE].map(|half| padded(right.add(half), tile, count));
                     load!("tmm6", &raw const first, 4 * SIDE);
                     load!("tmm7", &raw const second, 4 * SIDE);
                 }
@@ -293,8 +294,14 @@ fn transposed(rows: [__m512i; SIDE]) -> [__m512i; SIDE] {
     for column in 0..4 {
         let of = |four: usize| fours[4 * four + column];
         let (even, odd) = (
-            [_mm512_shuffle_i32x4::<0x88>(of(0), of(1)), _mm512_shuffle_i32x4::<0x88>(of(2), of(3))],
-            [_mm512_shuffle_i32x4::<0xDD>(of(0), of(1)), _mm512_shuffle_i32x4::<0xDD>(of(2), of(3))],
+            [
+                _mm512_shuffle_i32x4::<0x88>(of(0), of(1)),
+                _mm512_shuffle_i32x4::<0x88>(of(2), of(3)),
+            ],
+            [
+                _mm512_shuffle_i32x4::<0xDD>(of(0), of(1)),
+                _mm512_shuffle_i32x4::<0xDD>(of(2), of(3)),
+            ],
         );
         all[column] = _mm512_shuffle_i32x4::<0x88>(even[0], even[1]);
         all[4 + column] = _mm512_shuffle_i32x4::<0x88>(odd[0], odd[1]);
