@@ -27,11 +27,6 @@ fn shapes() -> Vec<(&'static str, NetworkShape)> {
     shapes
 }
 
-/// Every family, those with products in bfloat16 too.
-fn families() -> impl Iterator<Item = Simd> {
-    Simd::available().into_iter().chain(Simd::bfloat16())
-}
-
 /// A network's weights, and trajectories for it.
 struct Case {
     shape: NetworkShape,
@@ -78,7 +73,7 @@ impl Case {
 fn no_number_of_threads_changes_a_bit() {
     for (name, shape) in shapes() {
         let case = Case::new(&shape, 4, 7);
-        for kernels in families() {
+        for kernels in Simd::all() {
             let one = case.gradient(&mut case.learner(kernels, 1), &case.sequences());
             for threads in [2, 3, 7, 40] {
                 let many = case.gradient(&mut case.learner(kernels, threads), &case.sequences());
@@ -139,7 +134,7 @@ fn products_in_bfloat16_give_nearly_the_same_gradients() {
 fn recordings_replace_the_forward_pass_bit_by_bit() {
     for (name, shape) in shapes() {
         let case = Case::new(&shape, 5, 6);
-        for kernels in families() {
+        for kernels in Simd::all() {
             let mut learner = case.learner(kernels, 2);
             let plain = case.gradient(&mut learner, &case.sequences());
             let (recording, acted) = case.act(&learner, kernels);

@@ -99,9 +99,7 @@ fn learn(args: &BenchArgs) -> Outcome {
     let families: Vec<Simd> = match Simd::forced().map_err(Failure::bad)? {
         _ if args.portable => vec![Simd::PLAIN],
         Some(forced) => vec![forced],
-        None => {
-            Simd::bfloat16().into_iter().rev().chain(Simd::available().into_iter().rev()).collect()
-        }
+        None => Simd::all().into_iter().rev().collect(),
     };
     let mut threads = vec![1, args.threads as usize];
     threads.dedup();

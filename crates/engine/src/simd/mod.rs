@@ -114,8 +114,9 @@ impl Simd {
         all
     }
 
-    /// All that have a name on this processor.
-    fn all_named() -> Vec<Simd> {
+    /// All that this processor has: [`Simd::available`], then [`Simd::bfloat16`].
+    #[must_use]
+    pub fn all() -> Vec<Simd> {
         Simd::available().into_iter().chain(Simd::bfloat16()).collect()
     }
 
@@ -150,7 +151,7 @@ impl Simd {
     /// `avx512bf16` or `amxbf16`.
     fn named(name: &str) -> Result<Simd, SimdError> {
         let known = if name == "portable" { "plain" } else { name };
-        let there = Simd::all_named().into_iter().find(|simd| simd.name() == known);
+        let there = Simd::all().into_iter().find(|simd| simd.name() == known);
         there.ok_or_else(|| SimdError { given: name.escape_default().take(40).collect() })
     }
 
@@ -264,7 +265,7 @@ impl SimdError {
     /// What may be asked for.
     #[must_use]
     pub fn allowed() -> String {
-        let names: Vec<&str> = Simd::all_named().into_iter().map(Simd::name).collect();
+        let names: Vec<&str> = Simd::all().into_iter().map(Simd::name).collect();
         format!("one of {} on this processor", names.join(", "))
     }
 }
@@ -283,7 +284,7 @@ mod tests {
 
     #[test]
     fn families_are_named_and_unknown_ones_refused() {
-        for simd in Simd::all_named() {
+        for simd in Simd::all() {
             assert_eq!(Simd::named(simd.name()), Ok(simd));
         }
         assert_eq!(Simd::named("portable"), Ok(Simd::PLAIN));

@@ -184,6 +184,8 @@ pub(super) struct Lane {
     /// Number that decides its seeds.
     number: u64,
     env: Box<dyn Environment>,
+    /// Its [`Environment::fingerprint`], which takes a while to compute.
+    pub fingerprint: u64,
     /// What is shown beside observations.
     insight: Insight,
     /// Seeds of the episodes to come.
@@ -210,6 +212,7 @@ impl Lane {
         Lane {
             index,
             number,
+            fingerprint: env.fingerprint(),
             env,
             insight: options.insight,
             seeds,
@@ -259,7 +262,7 @@ impl Lane {
         LaneState {
             seeds: self.seeds.state(),
             seed: self.seed,
-            env: self.env.fingerprint(),
+            env: self.fingerprint,
             actions,
             deltas,
         }

@@ -142,7 +142,7 @@ impl VecEnv {
             cost_terms: env.cost_terms(),
             statistics: env.stat_names(),
             options,
-            envs: lanes.iter().map(|lane| lane.env().fingerprint()).collect(),
+            envs: lanes.iter().map(|lane| lane.fingerprint).collect(),
         };
         let extent = env.extent();
         let slots = || 0..=options.groups;

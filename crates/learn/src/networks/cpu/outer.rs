@@ -212,7 +212,7 @@ mod tests {
     /// block.
     #[test]
     fn sums_equal_plain_loops() {
-        for kernels in Simd::available().into_iter().chain(Simd::bfloat16()) {
+        for kernels in Simd::all() {
             // Two factors of eight bits lose that much of a term of at most 1.
             let lost = if kernels.family().rounds() { 2.01 / 256.0 } else { 0.0 };
             for (count, width, columns, rows) in
@@ -252,7 +252,7 @@ mod tests {
     /// The order of summation is that of the rows, wherever the part of the result begins.
     #[test]
     fn parts_of_a_result_have_the_bits_of_the_whole() {
-        for kernels in Simd::available().into_iter().chain(Simd::bfloat16()) {
+        for kernels in Simd::all() {
             let (inputs, sums) = (noise(700 * 70, 1), noise(700 * 32, 2));
             let (inputs, sums): (Vec<_>, Vec<_>) =
                 (inputs.chunks(70).collect(), sums.chunks(32).collect());
