@@ -64,6 +64,7 @@ impl Group {
                         _ => kept.push(run),
                     }
                 }
+                warnings.extend(kept.iter().find_map(|run| selected_otherwise(&kept[0], run)));
                 let shown = kept[0].config.options.iter().filter(|(key, _)| SHOWN.contains(&key.as_str()));
                 Group { shown: shown.map(|(key, value)| (key.clone(), value.clone())).collect(), runs: kept }
             })
@@ -160,6 +161,30 @@ impl Group {
         let options = self.shown.iter().filter(|(key, _)| Some(key.as_str()) != without);
         options.map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ")
     }
+}
+
+/// What to say of two runs of one experiment whose checkpoints were selected by different settings,
+/// so that their means are over unlike agents. Of what one of them lacks, being older, only a switch
+/// is known: it was off.
+fn selected_otherwise(first: &Run, other: &Run) -> Option<Warning> {
+    let value = |run: &Run, key: &String| run.config.selection.get(key).cloned();
+    let mut keys = first.config.selection.keys().chain(other.config.selection.keys());
+    let differ = |key: &&String| match (value(first, key), value(other, key)) {
+        (Some(one), Some(another)) => one != another,
+        (one, another) => one.or(another).is_some_and(|only| only == "true"),
+    };
+    let key = keys.find(differ)?;
+    let name = |run: &Run| value(run, key).unwrap_or_else(|| "not given".into());
+    Some(Warning {
+        problem: format!(
+            "{key} is {} here and {} in seed {} of the same experiment: their checkpoints were selected in two ways; train both alike before you average them",
+            name(other),
+            name(first),
+            first.config.seed
+        ),
+        path: other.path.clone(),
+        line: 0,
+    })
 }
 
 /// Adds, to experiments that would look the same, what they differ in.

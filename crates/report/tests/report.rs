@@ -281,7 +281,7 @@ fn a_report_on_many_experiments() {
     assert!(cells[4..7].iter().all(|cell| !cell.contains('.')), "{row}");
 }
 
-/// The last ten of five hundred points: of 80 reports they lie on the lines between the last three.
+/// The last ten of five hundred points: they lie on the lines between a run's last reports.
 fn last_ten(run: &Path) -> f64 {
     let text = std::fs::read_to_string(run.join("metrics.jsonl")).unwrap();
     let value = |line: &str| {
@@ -290,7 +290,7 @@ fn last_ten(run: &Path) -> f64 {
     };
     let returns: Vec<f64> = text.lines().map(value).collect();
     let at = |point: f64| {
-        let place = point / 500.0 * 80.0 - 1.0;
+        let place = point / 500.0 * returns.len() as f64 - 1.0;
         let left = (place.floor() as usize).min(returns.len() - 2);
         returns[left] + (returns[left + 1] - returns[left]) * (place - left as f64)
     };
@@ -594,6 +594,12 @@ fn a_closing_evaluation_is_the_headline() {
     };
     // 41 with an upper end of 45 of 50; nothing of the later eval.jsonl.
     assert_eq!(line("| PPOPID |"), "| PPOPID | **7.50** | 41.00 ✓ |");
+    // The paper selects none: what stands beside its values is of the end of training.
+    let beside = text.split("## Beside the paper").nth(1).unwrap();
+    let row = beside.lines().find(|line| line.starts_with("| Armament Burden |")).unwrap();
+    let end = last_ten(&run);
+    let shown = format!("| training | {end:.2} (n=1) | *8.99* | {:.2} |", end / 8.99);
+    assert!(row.contains(&shown), "{row}");
     let row = line("| Armament Burden | 1 | PPOPID | preset paper, rules tables, 1M frames | 1 |");
     assert!(
         row.contains("| 800k | 20 | 7.50 ± 0.50 | 41.00 ± 4.00 ✓ | 45.00 | 50 | 10 % | 70.50 |"),

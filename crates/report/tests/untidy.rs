@@ -220,3 +220,25 @@ fn runs_in_the_trash_count_nowhere() {
     let written = write_report(&[trash], &folder.0.join("out2"), "Trash").unwrap();
     assert_eq!(written.runs, 1);
 }
+
+/// Their means are over unlike agents, although all learned alike.
+#[test]
+fn seeds_whose_checkpoints_were_selected_by_other_settings_are_named() {
+    let folder = Folder::new("selected-otherwise");
+    let write = |seed: u64, options: &str| {
+        let path = folder.0.join(format!("runs/{seed}"));
+        let (env, algo, end) = (ENV, "PPOPID", (30.0, 9.0, 0.0));
+        Synthetic { env, algo, seed, frames: 1e6, reports: 20, options, end }.write(&path);
+    };
+    // An older version had no such switch, and named fewer numbers.
+    write(1, "");
+    write(2, ",\"evaluation\":{\"surely\":false,\"episodes\":32}");
+    assert_eq!(problems(&report(&folder).0), "");
+    write(3, ",\"evaluation\":{\"surely\":true,\"episodes\":32}");
+    write(4, ",\"evaluation\":{\"episodes\":64}");
+    let (written, text, _) = report(&folder);
+    let expected = "evaluation.surely is true here and not given in seed 1 of the same experiment";
+    assert!(problems(&written).contains(expected), "{}", problems(&written));
+    assert_eq!(written.warnings.len(), 1);
+    assert!(text.contains("4 runs of 1 experiment"), "{text}");
+}

@@ -113,6 +113,9 @@ pub struct Config {
     /// Every other key that may change results, as text; nested keys are joined by dots.
     /// `safety_budget` is among them only if it is not the scenario's own.
     pub options: BTreeMap<String, String>,
+    /// How its checkpoints were judged and one of them selected, as text. It does not change what
+    /// is learned, and so is no part of the identity.
+    pub selection: BTreeMap<String, String>,
 }
 
 impl Config {
@@ -206,6 +209,8 @@ impl Config {
             level = last;
         }
         let file = options.get("env.scenario_file.path").cloned();
+        let judged = options.iter().filter(|(key, _)| below(key, "evaluation"));
+        let selection = judged.map(|(key, value)| (key.clone(), value.clone())).collect();
         options.retain(|key, _| !NOT_IDENTITY.iter().any(|beginning| below(key, beginning)));
         let rules = rule_set(options.get("rules"));
         let hard = options.get("hard").is_some_and(|hard| hard == "true");
@@ -299,6 +304,7 @@ impl Config {
             frames,
             extended_from,
             options,
+            selection,
         })
     }
 

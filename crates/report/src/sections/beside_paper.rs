@@ -17,7 +17,11 @@ pub(super) fn section(groups: &[Group]) -> Section {
                 format!("{} {} {}", scenario_name(&config.scenario), config.level, paper.algorithm);
             notes.entry(note).or_default().push(cell);
         }
-        let source = group.headline();
+        // The paper's values are of the end of training. A selected checkpoint's would flatter ours.
+        let source = match group.final_samples("return_mean")[..] {
+            [] => Source::Evaluation,
+            _ => Source::Training,
+        };
         let (return_estimate, cost_estimate) =
             (group.estimate(source, "return_mean"), group.estimate(source, "cost_mean"));
         let ratio = |ours: Option<f64>, theirs: Option<f64>| match (ours, theirs) {
@@ -66,8 +70,9 @@ pub(super) fn section(groups: &[Group]) -> Section {
     let mut text = Vec::new();
     if !table.rows.is_empty() {
         text.push(
-            "The paper trained for 500M frames (hard constraint and curriculum: 300M). A run of fewer frames can only be held against \
-             the early part of its curves, in the section on training curves."
+            "Both are of the end of training, as the paper measures it; a run that has no points of training is shown by its \
+             evaluation. The paper trained for 500M frames (hard constraint and curriculum: 300M). A run of fewer frames can only be \
+             held against the early part of its curves, in the section on training curves."
                 .to_owned(),
         );
     }

@@ -239,7 +239,7 @@ fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table
         rows.iter_mut().flatten().for_each(|cell| cell.note.clear());
     }
     if rows.iter().any(|row| row[0].text.ends_with("(paper)")) {
-        caption += "; the paper's after 500M frames";
+        caption += "; the paper's at the end of training, after 500M frames";
     }
     if rows.iter().flatten().any(|cell| cell.text.contains('‡')) {
         caption += "; ‡ not every run has finished";
@@ -330,7 +330,7 @@ fn bars(
         caption: {
             let paper = members.iter().any(|group| comparable_end(group).is_some());
             let paper =
-                if paper { " Full colour: here; pale: the paper after 500M frames." } else { "" };
+                if paper { " Full colour: here; pale: the paper at the end of training, after 500M frames." } else { "" };
             let budget = if members.iter().any(|group| group.config().budget().is_some()) {
                 " Dashed: the budget."
             } else {
