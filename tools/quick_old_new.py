@@ -4,8 +4,8 @@
     python3 tools/quick_old_new.py runs/quick-old runs/quick-new runs/quick-ppo docs/results/campaign
 
 The score of a run is (R - random) / (PPO - random) of its selected checkpoint over the closing episodes if the upper 95 % end of
-their cost is within the budget, else 0. PPO's return is that of the third folder's last policies, random play's that of the
-`random-*.jsonl` of the fourth. Seeds that one side lacks in an environment are left
+their cost is within the budget, else 0; with --last, of its last policy over episodes of its own. PPO's return is that of the third
+folder's last policies, random play's that of the `random-*.jsonl` of the fourth. Seeds that one side lacks in an environment are left
 out there. The mean is over environments of the mean over seeds; its ratio has an interval of 2,000 bootstrap samples that draw seeds,
 the same for both sides, within each environment.
 """
@@ -19,12 +19,12 @@ from pathlib import Path
 from campaign_runs import interval
 
 
-def runs_of(root):
-    """{(environment, seed): what the selected checkpoint of a finished run returned and cost}."""
+def runs_of(root, last=False):
+    """{(environment, seed): what the selected checkpoint, or the last policy, of a finished run returned and cost}."""
     found = {}
     for path in sorted(Path(root).rglob("selected.json")):
         config, selected = (json.loads((path.parent / name).read_text()) for name in ("config.json", "selected.json"))
-        closing = selected.get("closing") or selected["last"]
+        closing = selected["last"] if last else selected.get("closing") or selected["last"]
         key = config["env"]["id"], config["seed"]
         if key in found:
             raise SystemExit(f"{path.parent}: {key[0]} with seed {key[1]} is there twice; leave one of them there")
@@ -100,9 +100,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("old", "new", "ppo", "chance"):
         parser.add_argument(name, type=Path)
+    parser.add_argument("--last", action="store_true", help="last policies rather than selected checkpoints")
     given = parser.parse_args()
-    new, scales = runs_of(given.new), scales_of(given.ppo, given.chance)
-    print(table(runs_of(given.old), new, scales))
+    new, scales = runs_of(given.new, given.last), scales_of(given.ppo, given.chance)
+    print(table(runs_of(given.old, given.last), new, scales))
     left_out = sorted({env for env, _ in new} - set(scales))
     if left_out:
         print(f"\nWithout {', '.join(left_out)}: no run of PPO there that returns more than random play.")

@@ -308,7 +308,8 @@ def test_two_sets_of_runs_are_scored_beside_each_other(tmp_path: Path) -> None:
         (path / "config.json").write_text(json.dumps(config))
         ends = None if high is None else [0.0, high]
         closing = {"episode_return": {"mean": returned}, "cost": {"mean": cost, "half_width": 0.5, "bootstrap": ends}}
-        (path / "selected.json").write_text(json.dumps({"closing": closing, "last": closing}))
+        last = {**closing, "cost": {"mean": cost / 2, "half_width": 0.5, "bootstrap": None}}
+        (path / "selected.json").write_text(json.dumps({"closing": closing, "last": last}))
 
     (tmp_path / "random-A-v0-paper.jsonl").write_text('{"return":0.5,"cost":1}\n{"return":1.5,"cost":1}\n')
     run("ppo", 1, 11.0, 50.0)
@@ -325,3 +326,8 @@ def test_two_sets_of_runs_are_scored_beside_each_other(tmp_path: Path) -> None:
     text = scored.table(scored.runs_of(tmp_path / "old"), scored.runs_of(tmp_path / "new"), scales)
     assert "| ALevel" not in text and "| A | 1, 2 | 6.0 @ 4.3 (1/2) | 0.25 | 8.5 @ 4.2 (2/2) | 0.75 |" in text
     assert "Mean feasible score 0.25 and 0.75, a ratio of 3.00, 2.00 to inf" in text
+    second = "A-v0", 2
+    assert (scored.runs_of(tmp_path / "old")[second], scored.runs_of(tmp_path / "old", last=True)[second]) == (
+        (6.0, 4.6, False),
+        (6.0, 2.3, True),
+    )
