@@ -90,6 +90,8 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("trace RemedyRushLevel1-v0 --actions empty", &["empty", "action"]),
         ("trace RemedyRushLevel1-v0 --actions folder", &["folder"]),
         ("trace RemedyRushLevel1-v0", &["--actions"]),
+        ("trace RemedyRushLevel1-v0 --actions empty --frame-skip 8", &["--frame-skip 8", "leave"]),
+        ("trace RemedyRushLevel1-v0 --actions empty --size 64x48", &["--size 64x48", "leave"]),
         ("eval none", &["none"]),
         ("eval zoo:nobody", &["zoo:nobody", "zoo"]),
         ("eval zoo:RemedyRushLevel1 --episodes 500 --worst 1 -o /proc/x/w.mp4", &["/proc/x"]),

@@ -324,6 +324,15 @@ impl Replay {
                 episode.cost
             ));
         }
+        // Of a term that has another name by now the total has to do.
+        for now in &episode.costs {
+            if let Some(&cost) = outcome.costs.get(now.name).filter(|cost| **cost != now.cost) {
+                return Some(format!(
+                    "{name}: was recorded with a cost of {cost} by {}, and plays now with {}",
+                    now.name, now.cost
+                ));
+            }
+        }
         let (steps, length) = (self.file.header().steps, episode.length);
         if self.stage.ended() && length < steps {
             return Some(format!("{name}: ends after {length} of its {steps} recorded steps"));

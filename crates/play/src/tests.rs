@@ -143,6 +143,11 @@ fn a_replay_that_differs_says_so() {
     outcome.terminated = !outcome.terminated;
     file.set_outcome(outcome.clone());
     assert!(play(&file).unwrap().contains("ends in another way"));
+    let term = outcome.costs.keys().next().unwrap().clone();
+    outcome.costs.insert(term.clone(), 77.0);
+    file.set_outcome(outcome.clone());
+    let by = format!("was recorded with a cost of 77 by {term}, and plays now with ");
+    assert!(play(&file).unwrap().contains(&by));
     outcome.episode_return += 1.0;
     file.set_outcome(outcome);
     assert!(play(&file).unwrap().contains("was recorded by version"));

@@ -88,8 +88,9 @@ pub struct RolloutArgs {
     pub observation: ObservationArgs,
 }
 
-/// `hasard trace`.
+/// `hasard trace`, which plays tic by tic and draws nothing.
 #[derive(Args, Debug)]
+#[command(mut_arg("frame_skip", |arg| arg.hide(true)), mut_arg("size", |arg| arg.hide(true)))]
 pub struct TraceArgs {
     /// Environment id
     #[arg(value_parser = env_id)]

@@ -28,6 +28,15 @@ const COLUMNS: [&str; 12] = [
 
 /// Runs the command.
 pub fn run(args: &TraceArgs) -> Outcome {
+    if args.env_args.frame_skip != 4 {
+        return Err(Failure::bad(format!(
+            "--frame-skip {}: trace plays tic by tic; leave it out",
+            args.env_args.frame_skip
+        )));
+    }
+    if let Some(size) = &args.env_args.size {
+        return Err(Failure::bad(format!("--size {size}: trace draws nothing; leave it out")));
+    }
     let mut options = settings::env_options(&args.env_args, Size::LEARNER)?;
     options.frame_skip = 1;
     let actions = read_actions(&args.actions)?;
