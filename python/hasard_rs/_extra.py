@@ -11,4 +11,4 @@ def need(library: str, extra: str, adapter: str) -> Any:
     try:
         return importlib.import_module(library)
     except ImportError as missing:
-        raise ImportError(f"hasard_rs.{adapter} needs {library}: pip install 'hasard-rs[{extra}]' ({missing})") from missing
+        raise ImportError(f"hasard_rs.{adapter} needs {library}: pip install '.[{extra}]' in the clone of hasard ({missing})") from missing

@@ -169,7 +169,9 @@ fn elsewhere(flag: &str) -> Option<String> {
     use clap::CommandFactory;
     let name = flag.trim_start_matches('-');
     if ["on", "workers"].contains(&name) {
-        return Some(format!("there is no {flag}; only the `hasard` of `pip install .` has it"));
+        return Some(format!(
+            "there is no {flag}; only the `hasard` of `pip install .` has it: docs/python.md, Clusters"
+        ));
     }
     if ["env", "environment", "task"].contains(&name) {
         return Some(format!(

@@ -145,6 +145,7 @@ fn what_several_tasks_cannot_have_is_refused() {
         ("--envs 1 --set learning.minibatches=1", "at least 2"),
         ("--curriculum 1,2", "curriculum"),
         ("--safety-budget RemedyRushLevel2-v0=3", "RemedyRushLevel2-v0"),
+        ("--safety-budget RemedyRushLevel1-v0=3", "--safety-budget VolcanicVentureLevel1-v0=COST"),
         (
             "--algo PPOSaute --safety-budget RemedyRushLevel1-v0=3 --safety-budget VolcanicVentureLevel1-v0=3",
             "PPOSaute",

@@ -47,8 +47,8 @@ pub struct TrainArgs {
     /// export-agent wrote, or zoo:NAME
     #[arg(long, value_name = "RUN", conflicts_with = "resume")]
     pub init_from: Option<PathBuf>,
-    /// Cost that an episode may have; TERM=COST for one named cost term, several times for several
-    /// constraints
+    /// Cost that an episode may have; TERM=COST for one named cost term alone, several times for
+    /// several constraints. What is given replaces the scenario's budget
     #[arg(long, value_name = "COST", aliases = ["budget", "cost-limit"])]
     pub safety_budget: Vec<String>,
     /// What budgets are held against: episode-mean, step-mean, or cvar:SHARE for the mean of the
@@ -114,7 +114,7 @@ pub struct EvalArgs {
     /// Number of episodes
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     pub episodes: u32,
-    /// Levels that no training has seen, of a task with `train_seeds` in its [map.generate]
+    /// Maps that no training has seen, of a task with `train_seeds` in its [map.generate]
     #[arg(long)]
     pub test_seeds: bool,
     /// Episode i is seeded SEED + i

@@ -71,7 +71,7 @@ pub struct RolloutArgs {
     /// Number of episodes
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     pub episodes: u32,
-    /// Levels that no training has seen, of a task with `train_seeds` in its [map.generate]
+    /// Maps that no training has seen, of a task with `train_seeds` in its [map.generate]
     #[arg(long)]
     pub test_seeds: bool,
     /// Episode i is seeded SEED + i

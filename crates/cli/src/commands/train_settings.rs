@@ -4,7 +4,7 @@ use crate::args::{Rules, TrainArgs};
 use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use hasard_learn::config::constraint::check_once_each;
+use hasard_learn::config::constraint::{check_every_task, check_once_each};
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::numbers::check_number;
 use hasard_learn::config::readers::readers;
@@ -95,6 +95,8 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     }
     config.check().map_err(Failure::bad)?;
     check_once_each(&config.constraints).map_err(Failure::bad)?;
+    let tasks: Vec<String> = config.env.tasks().into_iter().map(|task| task.id).collect();
+    check_every_task(&tasks, &config.constraints).map_err(Failure::bad)?;
     Ok(config)
 }
 

@@ -123,6 +123,20 @@ pub fn check_once_each(constraints: &[Constraint]) -> Result<(), LearnError> {
     Err(LearnError::Config(format!("{cost} has two budgets; give it one --safety-budget")))
 }
 
+/// Refuses budgets of some of a run's tasks: the others would have none, and cost what they like.
+///
+/// # Errors
+/// Names a task without a budget.
+pub fn check_every_task(tasks: &[String], constraints: &[Constraint]) -> Result<(), LearnError> {
+    let is_named = |task: &&String| constraints.iter().any(|one| one.term.as_ref() == Some(*task));
+    match tasks.iter().find(|task| !is_named(task)) {
+        Some(task) if tasks.iter().any(|task| is_named(&task)) => Err(LearnError::Config(format!(
+            "--safety-budget: {task} has none where another task has; add --safety-budget {task}=COST"
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// Where each constraint's cost is found among the terms; unknown names are refused.
 pub(crate) fn find_terms(
     terms: &[CostTerm],

@@ -188,7 +188,7 @@ pub struct LearningConfig {
     /// 1611.03673); 0 for none. Agents are handed on without what predicts it.
     #[serde(default)]
     pub auxiliary_depth: f64,
-    /// The same of which of ten groups of things each cell shows most of.
+    /// The same of which of ten groups of things, or none, each cell shows most of.
     #[serde(default)]
     pub auxiliary_labels: f64,
     /// The first forward pass over a rollout is not computed but taken from the actors, in

@@ -206,13 +206,13 @@ pub const METRICS: &[Metric] = &[
         "auxiliary_depth_loss",
         "nats",
         "learning.auxiliary_depth",
-        "Cross entropy of the predicted depth, mean over cells, without its weight. 2.08 is a guess.",
+        "Cross entropy of the predicted depth, mean over cells, without its weight. 2.08 is a guess among eight bands.",
     ),
     metric(
         "auxiliary_labels_loss",
         "nats",
         "learning.auxiliary_labels",
-        "The same of the predicted groups of things. 2.40 is a guess.",
+        "The same of the predicted groups of things. 2.40 is a guess among ten groups and none.",
     ),
     metric("loss", "", "", "The whole loss; of TRPO, TRPOLag, TRPOPID and CPO the critics'."),
     metric("gradient_norm", "", "", "Norm of its gradient before it is cut."),
@@ -270,7 +270,7 @@ pub const METRICS: &[Metric] = &[
     ),
     metric(
         "task/ID/return",
-        "return",
+        "reward",
         TASKS,
         "Mean return of the latest training episodes of that task.",
     ),
@@ -288,7 +288,7 @@ pub const METRICS: &[Metric] = &[
     ),
     metric(
         "eval/task/ID/return",
-        "return",
+        "reward",
         EVALUATED_TASKS,
         "Mean return of the evaluation episodes of that task.",
     ),

@@ -58,7 +58,8 @@ pub fn line(report: &Report) -> String {
     }
     if let Some(budget) = report.budgets.first() {
         if let Some(Some(term)) = report.terms.first() {
-            let cost = report.constraint_costs.first();
+            // Of one of several tasks, no episode may have ended yet.
+            let cost = report.constraint_costs.first().filter(|cost| !cost.is_nan());
             text.push_str(&format!(
                 "  {term} {}",
                 cost.map_or("-".into(), |cost| format!("{cost:.1}"))

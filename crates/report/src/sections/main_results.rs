@@ -329,8 +329,11 @@ fn bars(
         slug: slug(&name),
         caption: {
             let paper = members.iter().any(|group| comparable_end(group).is_some());
-            let paper =
-                if paper { " Full colour: here; pale: the paper at the end of training, after 500M frames." } else { "" };
+            let paper = if paper {
+                " Full colour: here; pale: the paper's end, at 500M frames."
+            } else {
+                ""
+            };
             let budget = if members.iter().any(|group| group.config().budget().is_some()) {
                 " Dashed: the budget."
             } else {
