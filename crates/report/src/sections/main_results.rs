@@ -328,11 +328,9 @@ fn bars(
     Figure {
         slug: slug(&name),
         caption: {
-            let paper = members.iter().any(|group| comparable_end(group).is_some());
-            let paper = if paper {
-                " Full colour: here; pale: the paper's end, at 500M frames."
-            } else {
-                ""
+            let paper = match members.iter().any(|group| comparable_end(group).is_some()) {
+                true => " Full colour: here; pale: the paper's end, at 500M frames.",
+                false => "",
             };
             let budget = if members.iter().any(|group| group.config().budget().is_some()) {
                 " Dashed: the budget."
