@@ -119,7 +119,7 @@ def test_adapters_say_what_they_need(library: str) -> None:
     needed = {"sb3": "stable_baselines3", "rllib": "ray", "torchrl": "torch"}.get(library, library)
     if importlib.util.find_spec(needed) is not None:
         pytest.skip("installed here")
-    with pytest.raises(ImportError, match=rf"hasard_rs\.{library} needs .*pip install 'hasard-rs\["):
+    with pytest.raises(ImportError, match=rf"hasard_rs\.{library} needs .*pip install '\.\["):
         importlib.import_module(f"hasard_rs.{library}")
 
 
