@@ -68,9 +68,10 @@ impl Failure {
     }
 }
 
-/// See [`note!`].
-pub fn write_note(mut line: String) {
-    line.push('\n');
+/// See [`note!`]. A name or a text of someone else's may stand in it.
+pub fn write_note(text: String) {
+    let lines = text.split('\n').map(|line| presentable(line) + "\n");
+    let line: String = lines.collect();
     let _ = std::io::Write::write_all(&mut std::io::stderr().lock(), line.as_bytes());
 }
 
@@ -158,8 +159,8 @@ pub fn usage_line(error: &clap::Error) -> String {
     let line = presentable(&parts.join("; ").replace(":; ", ": "));
     // The standard library's words for what is no number without a sign.
     let line = line.replace("invalid digit found in string", "give a whole number, 0 or more");
-    let most = format!("give a whole number up to {}", u64::MAX);
-    let line = line.replace("number too large to fit in target type", &most);
+    let line =
+        line.replace("number too large to fit in target type", "give a smaller whole number");
     line.strip_prefix("error: ").unwrap_or(&line).to_string()
 }
 

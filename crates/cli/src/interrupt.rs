@@ -104,6 +104,9 @@ fn listen() {
         if !is_ignored(SIGHUP) {
             signals.push(SIGHUP);
         }
+        // A file above `ulimit -f` is an error of the call then, as on a full disk, and no death.
+        // SAFETY: ignoring a signal installs no handler that could run at a bad moment.
+        unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
         // Without it the system's own handling stays: the command ends, if less tidily.
         if let Ok(mut signals) = signal_hook::iterator::Signals::new(signals) {
             std::thread::spawn(move || signals.forever().for_each(heard));

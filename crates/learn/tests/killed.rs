@@ -137,3 +137,35 @@ fn a_full_disk_ends_the_run_with_an_error_and_loses_nothing() {
     assert!(warnings.is_empty(), "{warnings:?}");
     fs::remove_dir_all(path).unwrap();
 }
+
+/// A run that goes back to an older checkpoint makes other ones than its selection was made from; and
+/// a folder with a selection alone is no place for a run.
+#[test]
+fn a_selection_of_what_is_made_anew_is_made_anew() {
+    let run = tiny::directory("selection-ahead");
+    let mut config = config();
+    config.frames = 40 * config.frames_per_rollout();
+    config.reporting.keep = 40;
+    tiny::run(Start::Fresh(config.clone()), &run).0.unwrap();
+    let before = selected(&run);
+    // As if the run had gone another way: this selection is of other policies.
+    let mut other = before.0.clone();
+    other["surely_within"] = (!other["surely_within"].as_bool().unwrap()).into();
+    fs::write(run.join("selected.json"), other.to_string()).unwrap();
+    for entry in fs::read_dir(run.join("checkpoints")).unwrap() {
+        let path = entry.unwrap().path();
+        let frames = path.file_name().unwrap().to_str().unwrap().strip_prefix("frames_");
+        if frames.is_some_and(|frames| frames.parse::<u64>().unwrap() > config.frames / 2) {
+            fs::remove_dir_all(path).unwrap();
+        }
+    }
+    tiny::run(Start::RESUME, &run).0.unwrap();
+    assert_eq!(selected(&run), before);
+    for gone in ["config.json", "metrics.jsonl"] {
+        fs::remove_file(run.join(gone)).unwrap();
+    }
+    fs::remove_dir_all(run.join("checkpoints")).unwrap();
+    let error = tiny::run(Start::Fresh(config), &run).0.unwrap_err().to_string();
+    assert!(error.contains("a selection of a run"), "{error}");
+    assert!(run.join("selected.json").is_file() && !run.join("config.json").exists());
+}

@@ -294,19 +294,24 @@ impl TrainConfig {
         (frames as f64 / self.learning.schedule_frames.unwrap_or(self.frames) as f64).min(1.0)
     }
 
-    /// Writes down what a run that begins goes by from then on: how long its schedules are, as long
-    /// as the run unless they were given a length, and what its products are rounded to, if
-    /// `HASARD_SIMD` names a family that rounds.
+    /// Writes down what a run that begins goes by from then on: how long its schedules are, and what
+    /// its products are rounded to, if `HASARD_SIMD` names a family that rounds.
     #[must_use]
-    pub fn begun(mut self) -> TrainConfig {
-        self.learning.schedule_frames.get_or_insert(self.frames);
+    pub fn begun(self) -> TrainConfig {
+        let mut config = self.scheduled();
         let rounds = |simd: Simd| simd.family().rounds();
         if Simd::forced().ok().flatten().is_some_and(rounds)
-            && self.device == "cpu"
-            && !self.learning.portable
+            && config.device == "cpu"
+            && !config.learning.portable
         {
-            self.learning.products = Products::Bfloat16;
+            config.learning.products = Products::Bfloat16;
         }
+        config
+    }
+
+    /// Writes down how long its schedules are: as long as the run, unless they were given a length.
+    pub(super) fn scheduled(mut self) -> TrainConfig {
+        self.learning.schedule_frames.get_or_insert(self.frames);
         self
     }
 

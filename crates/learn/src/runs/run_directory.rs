@@ -51,11 +51,12 @@ impl RunDirectory {
         directory.made.0 = made_folder;
         let checkpoints = path.join("checkpoints");
         let rests = fs::read_dir(&checkpoints).is_ok_and(|mut entries| entries.next().is_some())
-            || fs::metadata(path.join(METRICS)).is_ok_and(|data| data.is_file() && data.len() > 0);
+            || fs::metadata(path.join(METRICS)).is_ok_and(|data| data.is_file() && data.len() > 0)
+            || SELECTION.iter().any(|name| path.join(name).exists());
         let problem = if path.join("config.json").exists() {
             "there is a run already; go on with --resume, or choose another directory with --out"
         } else if rests {
-            "rows or checkpoints of a run are here, but not its config.json; bring it back, or choose another directory with --out"
+            "rows, checkpoints or a selection of a run are here, but not its config.json; bring it back, or choose another directory with --out"
         } else {
             ""
         };
@@ -88,7 +89,9 @@ impl RunDirectory {
             let _ = fs::remove_file(self.path.join(name));
         }
         if self.holds_no_row() {
-            let _ = fs::remove_file(self.path.join(METRICS));
+            for name in [METRICS, HEATMAPS] {
+                let _ = fs::remove_file(self.path.join(name));
+            }
             tensorboard::files(&self.path).iter().for_each(|file| drop(fs::remove_file(file)));
         }
         let _ = fs::remove_dir(self.path.join("checkpoints"));
@@ -191,7 +194,8 @@ impl RunDirectory {
 
     /// Drops the rows after `rows` frames from metrics and TensorBoard's files, and those after
     /// `frames` from heatmaps: a run that goes on from there writes them again. Rows that are no
-    /// JSON are dropped too, and named to `warn`.
+    /// JSON are dropped too, and named to `warn`. A selection that was made after `frames` goes too:
+    /// other checkpoints will come in the place of those that it chose from.
     pub fn rewind(
         &self,
         rows: u64,
@@ -200,6 +204,11 @@ impl RunDirectory {
     ) -> Result<(), LearnError> {
         self.rewind_lines(METRICS, rows, warn)?;
         self.rewind_lines(HEATMAPS, frames, warn)?;
+        if read_selection(&self.path).is_some_and(|known| known.is_made_after(frames)) {
+            for name in SELECTION.into_iter().chain(EPISODES).chain([CALIBRATION]) {
+                remove_if_there(&self.path.join(name))?;
+            }
+        }
         for file in tensorboard::files(&self.path) {
             let bytes = read_regular(&file)?;
             let kept = tensorboard::until(&bytes, rows);
@@ -331,6 +340,15 @@ fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), LearnErr
     write_whole(path, &text)
 }
 
+fn remove_if_there(path: &Path) -> Result<(), LearnError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(LearnError::file(path, "remove")(error))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Writes a file under another name and renames it when it is complete.
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
     let temporary = path.with_extension("partial");
@@ -340,5 +358,8 @@ fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
         file.sync_all()?;
         fs::rename(&temporary, path)
     };
-    write().map_err(LearnError::file(path, "write"))
+    write().map_err(|error| {
+        let _ = fs::remove_file(&temporary);
+        LearnError::file(path, "write")(error)
+    })
 }

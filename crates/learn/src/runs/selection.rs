@@ -129,6 +129,11 @@ impl Selection {
     pub fn closes(&self, frames: u64) -> bool {
         self.last.as_ref().is_some_and(|last| last.frames == frames)
     }
+
+    /// Whether it is of a run that ended after more frames than these.
+    pub(crate) fn is_made_after(&self, frames: u64) -> bool {
+        self.last.as_ref().is_some_and(|last| last.frames > frames)
+    }
 }
 
 /// The sets of episodes: their seeds have nothing in common.

@@ -80,9 +80,11 @@ impl Store {
     /// that are no candidates any more by what it knows. Not earlier: whenever the run is killed,
     /// the candidates of its newest checkpoint are there.
     pub fn write(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
-        checkpoint
-            .write(&self.directory.join(format!("frames_{:012}", checkpoint.progress.frames)))?;
-        self.all().into_iter().skip(self.keep).try_for_each(|old| remove(&old))?;
+        let written = self.directory.join(format!("frames_{:012}", checkpoint.progress.frames));
+        checkpoint.write(&written)?;
+        // Newer ones are damaged: the run went back behind them. They count for nothing.
+        let older = self.all().into_iter().skip_while(|path| *path != written);
+        older.skip(self.keep).try_for_each(|old| remove(&old))?;
         self.keep_candidates(&checkpoint.progress.candidates)
     }
 
@@ -172,5 +174,42 @@ impl Store {
             &self.directory,
             "every checkpoint is damaged; start a new run, or copy a whole checkpoint here",
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn checkpoint(frames: u64) -> Checkpoint {
+        let progress = json!({
+            "frames": frames, "rollouts": 1, "updates": 1, "wall_seconds": 1.0, "returns": [], "optimiser_steps": [],
+            "algorithm": null, "watch": { "recent": [], "episodes": 0, "waited": [], "window": 1 }, "samplers": [],
+            "pixel_count": 0.0,
+        });
+        let progress = serde_json::from_value(progress).unwrap();
+        Checkpoint { weights: vec![1], training: vec![2], progress }
+    }
+
+    /// A run went back behind damaged checkpoints: those that it writes on its way do not go for them.
+    #[test]
+    fn newer_checkpoints_take_no_room_from_what_is_written() {
+        let run = std::env::temp_dir().join(format!("hasard-store-{}", std::process::id()));
+        let store = Store::new(&run, 1);
+        let frames = || {
+            let names = store.all();
+            let name = |path: &PathBuf| path.file_name().unwrap().to_str().unwrap().to_owned();
+            names.iter().map(name).collect::<Vec<_>>()
+        };
+        store.write(&checkpoint(900)).unwrap();
+        fs::write(store.directory.join("frames_000000000900").join(STATE), "").unwrap();
+        store.write(&checkpoint(300)).unwrap();
+        store.write(&checkpoint(400)).unwrap();
+        assert_eq!(frames(), ["frames_000000000900", "frames_000000000400"]);
+        // Once it is past them they go as others do.
+        store.write(&checkpoint(1_000)).unwrap();
+        assert_eq!(frames(), ["frames_000000001000"]);
+        fs::remove_dir_all(&run).unwrap();
     }
 }
