@@ -185,3 +185,36 @@ fn a_sweep_does_not_take_a_run_of_other_settings_for_its_own() {
     folder.file("s.toml", grids.as_bytes());
     assert!(folder.refused("sweep s.toml").contains("128 frames"));
 }
+
+/// `HASARD_SIMD` chooses what a run that begins multiplies in; one that goes on keeps to its own.
+#[test]
+fn a_resumed_run_keeps_its_products() {
+    let folder = trained("products");
+    let go_on = "train RemedyRushLevel1 --resume --frames 256 --out run --quiet";
+    let output = folder.run_with(go_on, &[("HASARD_SIMD", "avx512bf16")]);
+    if String::from_utf8_lossy(&output.stderr).contains("HASARD_SIMD") {
+        return; // This processor lacks the family, and says so.
+    }
+    assert!(output.status.success(), "{output:?}");
+    let config = text(&folder, "run/config.json");
+    assert!(config.contains("\"products\": \"float32\""), "{config}");
+    assert!(!config.contains("bfloat16"), "{config}");
+}
+
+/// A limit on the size of files ends no program: it is an error as on a full disk, and nothing is left.
+#[cfg(unix)]
+#[test]
+fn a_file_above_the_limit_is_an_error_and_leaves_nothing() {
+    let folder = Folder::new("limit");
+    let output = std::process::Command::new("sh")
+        .args(["-c", "ulimit -f 1; exec \"$0\" export-wad VolcanicVentureLevel1-v0 -o vv1.wad"])
+        .arg(env!("CARGO_BIN_EXE_hasard"))
+        .current_dir(&folder.0)
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(error.starts_with("hasard: ") && error.contains("vv1.wad"), "{error}");
+    assert_eq!(error.lines().count(), 1, "{error}");
+    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 0);
+}
