@@ -142,8 +142,7 @@ impl TrainConfig {
         settings: &[String],
         frames: u64,
     ) -> Result<TrainConfig, LearnError> {
-        // A run of an older version knew no other length of its schedules than its own. What
-        // `HASARD_SIMD` names is for runs that begin: this one keeps to its products.
+        // An older version's run knows no length of its schedules. It keeps to its own products.
         let before = self.clone().scheduled();
         let mut config = before.with_all(settings)?;
         if config.frames != self.frames && config.frames < frames {
