@@ -4,6 +4,9 @@ use crate::settings::Elsewhere;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
+/// Tics that each action is held where nothing is said.
+pub const FRAME_SKIP: u32 = 4;
+
 /// `--seed` of a command that draws nothing by chance: scripts give it to all alike.
 #[derive(Args, Debug, Clone, Default)]
 pub struct UnusedSeed {
@@ -31,7 +34,7 @@ pub struct EnvArgs {
     #[arg(long)]
     pub full_actions: bool,
     /// Tics (1/35 s) that each action is held
-    #[arg(long, value_name = "TICS", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=35))]
+    #[arg(long, value_name = "TICS", default_value_t = FRAME_SKIP, value_parser = clap::value_parser!(u32).range(1..=35))]
     pub frame_skip: u32,
     /// Frame size, 64x48 to 1920x1080; if absent 128x72 for learners (the nearest-neighbour
     /// reduction of 160x120), 640x480 to play and render, 320x240 to record, 160x120 as .gif
@@ -55,7 +58,7 @@ impl EnvArgs {
             || self.early_creatures
             || self.hard
             || self.full_actions
-            || self.frame_skip != 4
+            || self.frame_skip != FRAME_SKIP
     }
 
     /// Where the maps and pictures of an agent's run are.

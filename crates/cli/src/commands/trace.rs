@@ -1,6 +1,6 @@
 //! `hasard trace`: recorded inputs, tic by tic.
 
-use crate::args::{Size, TraceArgs};
+use crate::args::{FRAME_SKIP, Size, TraceArgs};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_engine::math::{Angle, Fixed};
@@ -28,7 +28,7 @@ const COLUMNS: [&str; 12] = [
 
 /// Runs the command.
 pub fn run(args: &TraceArgs) -> Outcome {
-    if args.env_args.frame_skip != 4 {
+    if args.env_args.frame_skip != FRAME_SKIP {
         return Err(Failure::bad(format!(
             "--frame-skip {}: trace plays tic by tic; leave it out",
             args.env_args.frame_skip
