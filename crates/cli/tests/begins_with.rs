@@ -24,3 +24,31 @@ fn an_agent_keeps_its_buttons_under_rules_that_list_them_otherwise() {
     assert_eq!(played(&folder, "from_agent --latest"), agent);
     assert_eq!(played(&folder, "from_run --latest"), agent);
 }
+
+/// A sweep took runs from an agent for those from nothing, and could not go on with one.
+#[test]
+fn a_sweep_knows_what_its_runs_began_with() {
+    let folder = Folder::new("begins_with_sweep");
+    let options = |frames: u32, init_from: &str| {
+        format!(
+            "out = \"runs\"\nframes = {frames}\nscenarios = [\"RemedyRush\"]\nlevels = [1]\nalgorithms = [\"PPO\"]\n\
+             seeds = [1]\n[options]\n{init_from}\nthreads = 1\nenvs = 4\neval-every = 0\n[settings]\nsampling.rollout = 8\n"
+        )
+    };
+    let zoo = "init-from = \"zoo:RemedyRushLevel1\"";
+    folder.file("s.toml", options(256, zoo).as_bytes());
+    let line = "sweep s.toml --json";
+    assert!(folder.ok(line).contains("\"finished\":1"));
+    assert!(folder.ok(line).contains("\"skipped\":1"));
+    // What still lacks frames goes on, with the command that began it.
+    folder.file("s.toml", options(512, zoo).as_bytes());
+    assert!(folder.ok(line).contains("\"finished\":1"));
+    // Weights of its own are another run, and are not trained over it.
+    let path = "runs/RemedyRushLevel1-v0/PPO";
+    let run = std::fs::read_dir(folder.0.join(path)).unwrap().next().unwrap().unwrap().path();
+    let run = format!("{path}/{}/seed1", run.file_name().unwrap().to_string_lossy());
+    let train = "train RemedyRushLevel1 --resume --algo PPO --out";
+    let said = folder.refused(&format!("{train} {run} --init-from zoo:VolcanicVentureLevel1"));
+    assert!(said.contains("began with other weights, of zoo:RemedyRushLevel1"), "{said}");
+    folder.ok(&format!("{train} {run} --init-from zoo:RemedyRushLevel1 --frames 768 --quiet"));
+}

@@ -54,7 +54,7 @@ fn a_claim_holds_on_all_kernels_and_threads() {
 fn forged_claims_are_refused() {
     let (folder, path, claim) = claimed("claim_forged");
     let agent = claim["agent"].as_str().unwrap().to_string();
-    let sha = |bytes: &[u8]| hasard_learn::runs::claim::sha256(bytes);
+    let sha = |bytes: &[u8]| hasard_learn::runs::checksum::sha256(bytes);
     let other = folder.read("other.agent");
     let forgeries: &[(&str, Value, &str)] = &[
         ("return_mean", json!(claim["return_mean"].as_f64().unwrap() + 1.0), "return"),

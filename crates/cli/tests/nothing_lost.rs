@@ -218,3 +218,29 @@ fn a_file_above_the_limit_is_an_error_and_leaves_nothing() {
     assert_eq!(error.lines().count(), 1, "{error}");
     assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 0);
 }
+
+/// Such sweeps began, said that their runs failed, and that the same command would go on.
+#[test]
+fn a_sweep_that_cannot_work_does_not_begin() {
+    let folder = Folder::new("sweep_cannot");
+    folder.file("file", b"mine");
+    let sweep = |lines: &str| {
+        format!(
+            "frames = 4096\nscenarios = [\"RemedyRush\"]\nlevels = [1]\nalgorithms = [\"PPO\"]\nseeds = [1]\n{lines}\n"
+        )
+    };
+    let long = format!("out = \"new\"\n[options]\nset = \"learning.rate=0.{}1\"", "0".repeat(300));
+    for (lines, named) in [
+        ("out = \"file/runs\"", "file: is a file"),
+        (&long, "more than the 255 of a file system"),
+        ("out = \"new\"\n[options]\ncurriculum = \"1:400,2:600\"", "--curriculum 1:400,2:600"),
+        ("out = \"new\"\n[options]\nset = \"seed=3\"", "--set seed"),
+        ("out = \"new\"\n[options]\ninit-from = \"nowhere\"", "nowhere"),
+    ] {
+        folder.file("s.toml", sweep(lines).as_bytes());
+        let said = folder.refused("sweep s.toml --json");
+        assert!(said.contains(named), "{lines}: {said}");
+    }
+    assert_eq!(folder.read("file"), b"mine");
+    assert!(!folder.0.join("new").exists());
+}

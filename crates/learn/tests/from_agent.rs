@@ -4,10 +4,10 @@ mod tiny;
 
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
 use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
-use hasard_learn::runs::run_directory::read_selection;
+use hasard_learn::runs::run_directory::{read_config, read_selection};
 use hasard_learn::runs::trainer::Start;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A run that has selected a checkpoint, and the file of its agent.
 fn trained(name: &str) -> (TrainConfig, PathBuf, PathBuf) {
@@ -56,6 +56,69 @@ fn a_run_begins_with_the_weights_of_a_file() {
         }
     }
     assert!(largest_step > 0.0, "the file has eight bits a weight, the run thirty-two");
+    for at in [run, second] {
+        fs::remove_dir_all(at).unwrap();
+    }
+    fs::remove_file(file).unwrap();
+}
+
+/// A run that was killed before its first checkpoint had random weights when it went on.
+#[test]
+fn a_run_that_goes_on_from_nothing_has_the_weights_that_it_began_with() {
+    let (config, run, file) = trained("from-again");
+    for (place, name) in [(&file, "file"), (&run, "run")] {
+        let whole = tiny::directory(&format!("from-again-whole-{name}"));
+        tiny::run(Start::From(config.clone(), place.clone()), &whole).0.unwrap();
+        let written = fs::read(whole.join("config.json")).unwrap();
+        let killed = tiny::directory(&format!("from-again-killed-{name}"));
+        fs::create_dir_all(&killed).unwrap();
+        fs::write(killed.join("config.json"), &written).unwrap();
+        tiny::run(Start::RESUME, &killed).0.unwrap();
+        assert_eq!(tiny::weights(&killed), tiny::weights(&whole), "{name}");
+        let apart = read_config(&killed).unwrap().init_from.unwrap();
+        assert_eq!((Path::new(&apart.place), apart.sha256.len()), (place.as_path(), 64));
+        // Other weights at the place are not those that it began with.
+        fs::remove_dir_all(killed.join("checkpoints")).unwrap();
+        for name in ["metrics.jsonl", "selected.json"] {
+            fs::remove_file(killed.join(name)).unwrap();
+        }
+        if place.is_file() {
+            fs::write(place, export_latest(&whole).unwrap()).unwrap();
+        } else {
+            let settings = vec![format!("frames={}", config.frames + config.frames_per_rollout())];
+            tiny::run(Start::Resume { settings }, place).0.unwrap();
+        }
+        let refused = tiny::run(Start::RESUME, &killed).0.unwrap_err();
+        assert!(refused.contains("other weights now") && refused.contains("--out"), "{refused}");
+        if place.is_file() {
+            fs::remove_file(place).unwrap();
+            let refused = tiny::run(Start::RESUME, &killed).0.unwrap_err();
+            assert!(refused.contains("are gone"), "{refused}");
+        }
+        assert_eq!(fs::read(killed.join("config.json")).unwrap(), written);
+        fs::remove_dir_all(whole).unwrap();
+        fs::remove_dir_all(killed).unwrap();
+    }
+    fs::remove_dir_all(run).unwrap();
+}
+
+/// What a run began with is no setting of the machine: a run from other weights is another.
+#[test]
+fn settings_know_what_a_run_began_with() {
+    let (config, run, file) = trained("from-known");
+    let second = tiny::directory("from-known-second");
+    tiny::run(Start::From(config.clone(), file.clone()), &second).0.unwrap();
+    let known = read_config(&second).unwrap();
+    let (name, ..) = known.unlike(&config.clone().begun()).unwrap();
+    assert_eq!(name, "init_from");
+    // The same weights at another place are the same.
+    let mut elsewhere = known.clone();
+    elsewhere.init_from.as_mut().unwrap().place = "elsewhere".into();
+    assert_eq!(known.unlike(&elsewhere), None);
+    elsewhere.init_from.as_mut().unwrap().sha256 = "0".repeat(64);
+    assert_eq!(known.unlike(&elsewhere).unwrap().0, "init_from.sha256");
+    let refused = known.with("init_from=null").unwrap_err().to_string();
+    assert!(refused.contains("--init-from"), "{refused}");
     for at in [run, second] {
         fs::remove_dir_all(at).unwrap();
     }

@@ -79,20 +79,17 @@ fn train_until(start: Start, path: &Path, at: usize) -> (Summary, usize) {
     (summary, made.into_inner())
 }
 
-/// What is there in the end, without what a clock decides, or what is counted since the last
-/// report.
+/// What is there in the end, without what a clock decides.
 fn outcome(run: &Path) -> (Vec<Value>, Value, Vec<String>, Vec<u8>) {
     let text = fs::read_to_string(run.join("metrics.jsonl")).unwrap();
     let rows = text.lines().map(|line| {
         let row: Value = serde_json::from_str(line).unwrap();
-        let kept = |name: &&String| {
-            ["frames", "episodes", "multiplier"].contains(&name.as_str())
-                || name.starts_with("eval/")
-        };
         row.as_object()
             .unwrap()
             .iter()
-            .filter(|(name, _)| kept(name))
+            .filter(|(name, _)| {
+                !["wall_s", "fps"].contains(&name.as_str()) && !name.starts_with("seconds_")
+            })
             .map(|(name, value)| (name.clone(), value.clone()))
             .collect()
     });
@@ -132,6 +129,32 @@ fn a_run_stopped_in_any_evaluation_equals_the_uninterrupted_one() {
         fs::remove_dir_all(path).unwrap();
     }
     fs::remove_dir_all(straight).unwrap();
+}
+
+/// A run whose folder was moved made another in its place, ended well and was torn in two.
+#[cfg(unix)]
+#[test]
+fn a_run_whose_folder_is_moved_ends_there() {
+    let (path, away) = (tiny::directory("stopped-moved"), tiny::directory("stopped-away"));
+    let stop = AtomicBool::new(false);
+    let mut hooks = Hooks {
+        stop: &stop,
+        report: &mut |_| fs::rename(&path, &away).unwrap(),
+        warn: &mut |_| {},
+    };
+    let worlds =
+        |_: &EnvConfig, options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Risk::new(true))));
+    let message = train(Start::Fresh(config()), &path, &worlds, &mut hooks)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("was moved or removed") && message.contains("--resume"), "{message}");
+    assert!(!path.exists());
+    // Put back, it goes on: from the beginning, as it had no checkpoint yet.
+    fs::rename(&away, &path).unwrap();
+    tiny::run(Start::RESUME, &path).0.unwrap();
+    assert!(path.join("selected.json").exists());
+    fs::remove_dir_all(path).unwrap();
 }
 
 /// A run that ended without an evaluation is evaluated when it is resumed and asked for one.

@@ -45,7 +45,7 @@ pub struct TrainArgs {
     pub curriculum: Option<String>,
     /// Begin with the weights and normalisers of another run, or of an agent: a file that
     /// export-agent wrote, or zoo:NAME
-    #[arg(long, value_name = "RUN", conflicts_with = "resume")]
+    #[arg(long, value_name = "RUN")]
     pub init_from: Option<PathBuf>,
     /// Cost that an episode may have; TERM=COST for one named cost term alone, several times for
     /// several constraints. What is given replaces the scenario's budget

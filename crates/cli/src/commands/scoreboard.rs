@@ -5,7 +5,8 @@ use crate::args::ScoreboardArgs;
 use crate::failure::{Failure, Lines, Outcome, presentable};
 use crate::settings::cores;
 use hasard_learn::config::EnvConfig;
-use hasard_learn::runs::claim::{Claim, LISTED_EPISODES, Verdict, sha256};
+use hasard_learn::runs::checksum::sha256;
+use hasard_learn::runs::claim::{Claim, LISTED_EPISODES, Verdict};
 use hasard_report::scoreboard::{Entry, write_scoreboard};
 use serde_json::json;
 

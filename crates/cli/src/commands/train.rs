@@ -60,6 +60,7 @@ pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
             );
             return Err(Failure::bad(problem));
         }
+        super::resume::check_init_from(args, &config, &directory)?;
         let settings = super::resume::settings(args, typed, &config, &directory)?;
         let config = config.with_all(&settings).map_err(Failure::bad)?;
         (Start::Resume { settings }, config)

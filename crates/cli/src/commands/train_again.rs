@@ -6,7 +6,7 @@ use serde_json::json;
 use std::path::Path;
 
 /// The command that begins a run with these settings, but for those of machine, reports and
-/// evaluations, and for an agent that it began with: settings do not know of one.
+/// evaluations.
 pub fn command(config: &TrainConfig) -> String {
     let (env, usual) = (&config.env, EnvConfig::new(&config.env.id));
     // A task of the user's is named by its file.
@@ -25,6 +25,9 @@ pub fn command(config: &TrainConfig) -> String {
         "hasard train {task} --algo {} --preset {} --frames {} --seed {}",
         config.algorithm, config.preset, config.frames, config.seed
     )];
+    if let Some(init_from) = &config.init_from {
+        words.push(format!("--init-from {}", quote(Path::new(&init_from.place))));
+    }
     // Said always where the preset's own rules might be others.
     if env.rules != usual.rules || config.preset == Preset::Tables {
         words.push(format!("--rules {}", env.rules));
@@ -75,7 +78,7 @@ pub fn command(config: &TrainConfig) -> String {
         }
         for (name, _, value) in plain.all_unlike(config) {
             match name.as_str() {
-                "constraints" | "curriculum" => {}
+                "constraints" | "curriculum" | "init_from" => {}
                 "constraint_statistic" => {
                     words.push(format!("--constraint-statistic {}", config.constraint_statistic));
                 }
@@ -100,6 +103,7 @@ mod tests {
             "",
             "--preset tables --seed 4 --frames 5000",
             "--preset paper --algo TRPOLag --rules released --hard --full-actions",
+            "--init-from zoo:RemedyRushLevel1 --seed 3",
             "--safety-budget 7.5 --observation segmented --size 64x48 --envs 8 --frame-stack 2",
             "--safety-budget 50 --safety-budget zone_visits=2 --constraint-statistic cvar:0.1",
             "--curriculum 1,2,3 --frames 3000 --set learning.gamma=0.5 --set network.dense=[32,16]",

@@ -2,13 +2,15 @@
 
 use crate::args::{Rules, TrainArgs};
 use crate::failure::Failure;
+use crate::zoo;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use hasard_learn::config::constraint::{check_every_task, check_once_each};
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::numbers::check_number;
 use hasard_learn::config::readers::readers;
-use hasard_learn::config::{AlgorithmKind, Constraint, Preset, TrainConfig};
+use hasard_learn::config::{AlgorithmKind, Constraint, InitFrom, Preset, TrainConfig};
+use std::path::Path;
 
 /// The command with the rules that its preset belongs to, unless it names others: what made the
 /// paper's tables is both.
@@ -88,6 +90,9 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         let named = |error| Failure::bad(format!("--set '{set}': {error}"));
         config.set_frames(config.with(set).map_err(named)?.frames);
     }
+    if let Some(place) = &args.init_from {
+        config.init_from = Some(init_from(place)?);
+    }
     let mut config =
         config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     if let Some(text) = &args.curriculum {
@@ -98,6 +103,12 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     let tasks: Vec<String> = config.env.tasks().into_iter().map(|task| task.id).collect();
     check_every_task(&tasks, &config.constraints).map_err(Failure::bad)?;
     Ok(config)
+}
+
+/// The weights that a place has now.
+pub fn init_from(place: &Path) -> Result<InitFrom, Failure> {
+    // Damaged checkpoints are named when the run begins.
+    InitFrom::at(&zoo::find(place.as_os_str())?, &mut |_| ()).map_err(Failure::bad)
 }
 
 /// A line for each `--set` of the algorithm's own settings that this algorithm does not read.

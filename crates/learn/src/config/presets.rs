@@ -34,6 +34,7 @@ impl TrainConfig {
             preset,
             seed: 1,
             frames: 500_000_000,
+            init_from: None,
             curriculum: Vec::new(),
             device: "cpu".into(),
             episode_steps,

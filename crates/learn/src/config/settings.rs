@@ -11,7 +11,7 @@ use crate::config::train_config::TrainConfig;
 use crate::error::LearnError;
 
 /// Settings that others hang on, and what to use instead: it brings those along.
-const OTHERS_HANG_ON: [(&str, &str); 11] = [
+const OTHERS_HANG_ON: [(&str, &str); 12] = [
     ("version", "the program of that version"),
     ("algorithm", "--algo"),
     ("preset", "--preset"),
@@ -21,6 +21,7 @@ const OTHERS_HANG_ON: [(&str, &str); 11] = [
     ("env.rules", "--rules"),
     ("env.hard", "--hard"),
     ("env.frame_skip", "--frame-skip"),
+    ("init_from", "--init-from"),
     ("curriculum", "--curriculum"),
     ("changes", "--resume, which writes them down"),
 ];
@@ -185,7 +186,14 @@ impl TrainConfig {
     /// All such settings.
     #[must_use]
     pub fn all_unlike(&self, other: &TrainConfig) -> Vec<(String, Value, Value)> {
-        let elsewhere = ["frames", "device", "env.maps", "env.iwad", "learning.schedule_frames"];
+        let elsewhere = [
+            "frames",
+            "device",
+            "env.maps",
+            "env.iwad",
+            "init_from.place",
+            "learning.schedule_frames",
+        ];
         let machine =
             |name: &str| CHANGE_NOTHING.iter().chain(&elsewhere).any(|group| within(name, group));
         let mut found = Vec::new();

@@ -11,8 +11,8 @@ use crate::config::names::names;
 use crate::config::numbers::{Shown, check_number, refuse};
 use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, CriticInput, EnvConfig,
-    EvaluationConfig, LearningConfig, NetworkConfig, Products, ReportingConfig, ReturnNormaliser,
-    SamplingConfig,
+    EvaluationConfig, InitFrom, LearningConfig, NetworkConfig, Products, ReportingConfig,
+    ReturnNormaliser, SamplingConfig,
 };
 use crate::error::LearnError;
 
@@ -49,6 +49,10 @@ pub struct TrainConfig {
     pub seed: u64,
     /// Length of the run in frames (tics): steps times frame skip.
     pub frames: u64,
+    /// The agent or run whose weights the run began with, if any: its place as it was typed, and
+    /// the SHA-256 of the agent's file or of the weights of the run's checkpoint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub init_from: Option<InitFrom>,
     /// Levels that are trained one after the other; empty for the environment's own level alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curriculum: Vec<Lesson>,

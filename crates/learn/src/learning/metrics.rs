@@ -1,9 +1,10 @@
 //! Numbers worth reporting, averaged until they are.
 
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Means by name, in the order of first mention.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize)]
 pub struct Means {
     sums: Vec<(Cow<'static, str>, f64, u64)>,
 }
@@ -22,6 +23,12 @@ impl Means {
             }
             None => self.sums.push((name, value, 1)),
         }
+    }
+
+    /// Whether nothing was added.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.sums.is_empty()
     }
 
     /// Mean of a name, if anything was added to it.

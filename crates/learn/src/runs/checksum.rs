@@ -1,5 +1,13 @@
 //! CRC-32C: guards checkpoints against bit rot, and records of TensorBoard's files as their format
-//! demands.
+//! demands. SHA-256: says which agent it is that was claimed, or that a run began with.
+
+use sha2::{Digest, Sha256};
+
+/// SHA-256 of some bytes, in hexadecimal digits.
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
 
 /// CRC-32C (Castagnoli) of some bytes.
 #[must_use]
@@ -50,7 +58,7 @@ const fn tables() -> [[u32; 256]; 8] {
 
 #[cfg(test)]
 mod tests {
-    use super::crc32c;
+    use super::{crc32c, sha256};
 
     /// Test vectors of RFC 3720, appendix B.4.
     #[test]
@@ -60,5 +68,12 @@ mod tests {
         let rising: Vec<u8> = (0..32).collect();
         assert_eq!(crc32c(&rising), 0x46DD_794E);
         assert_eq!(crc32c(b"123456789"), 0xE306_9283);
+    }
+
+    /// Example of FIPS 180-2, appendix B.1.
+    #[test]
+    fn a_digest_equals_that_of_the_standard() {
+        let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(sha256(b"abc"), digest);
     }
 }

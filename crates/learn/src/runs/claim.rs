@@ -9,13 +9,13 @@ use std::path::Path;
 use hasard_envs::{Env, EnvOptions, Episode, RuleSet, VecEnv};
 use hasard_media::files::{NO_FILE, is_special};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use crate::config::{Constraint, EnvConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::networks::distribution::ActionShape;
 use crate::runs::agent::{Choice, TrainedPolicy, Which, run_config};
 use crate::runs::agent_file::AgentFile;
+use crate::runs::checksum::sha256;
 use crate::runs::evaluate::{Evaluation, play};
 
 /// Seed of the first episode of every claim. Trainings and evaluations draw theirs elsewhere, and
@@ -113,12 +113,6 @@ pub fn wrong_words(name: &str, how: &str) -> Option<String> {
         ));
     }
     None
-}
-
-/// SHA-256 in hexadecimal digits.
-#[must_use]
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// What episodes were, to the bit.

@@ -13,6 +13,7 @@ pub mod evaluation;
 pub mod examiner;
 mod first_episodes;
 pub mod heatmap;
+pub mod init_from;
 pub mod measure;
 pub mod metrics_explained;
 pub mod metrics_log;

@@ -37,6 +37,8 @@ pub struct RunDirectory {
     path: PathBuf,
     /// The folder was made for the run, and the lock's file.
     made: (bool, bool),
+    /// Which folder that is, whatever its path becomes; not all systems say.
+    folder: Option<(u64, u64)>,
     /// The system gives the lock back when the process ends, however it ends.
     _lock: File,
 }
@@ -139,7 +141,8 @@ impl RunDirectory {
         }
         match held {
             Ok(()) => {
-                Ok(RunDirectory { path: path.to_path_buf(), made: (false, made), _lock: lock })
+                let (path, folder) = (path.to_path_buf(), identity(path));
+                Ok(RunDirectory { path, made: (false, made), folder, _lock: lock })
             }
             Err(TryLockError::WouldBlock) => Err(LearnError::content(
                 path,
@@ -149,6 +152,18 @@ impl RunDirectory {
                 Err(LearnError::File { path: file, doing: "lock", source })
             }
         }
+    }
+
+    /// Refuses to go on where the folder was moved or removed meanwhile: half of the run would be
+    /// elsewhere.
+    pub fn check_is_there(&self) -> Result<(), LearnError> {
+        if identity(&self.path) == self.folder {
+            return Ok(());
+        }
+        Err(LearnError::content(
+            &self.path,
+            "the run's folder was moved or removed while it trained; put it back and go on with --resume, or train anew with another --out",
+        ))
     }
 
     /// Writes the settings of a run that goes on with others than before.
@@ -338,6 +353,19 @@ fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), LearnErr
     let text = serde_json::to_vec_pretty(value)
         .map_err(|error| LearnError::content(path, format!("cannot be written: {error}")))?;
     write_whole(path, &text)
+}
+
+/// What stays the same of a folder when it is moved.
+#[cfg(unix)]
+fn identity(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    fs::metadata(path).ok().map(|data| (data.dev(), data.ino()))
+}
+
+/// What stays the same of a folder when it is moved: here nothing is known of it.
+#[cfg(not(unix))]
+fn identity(_: &Path) -> Option<(u64, u64)> {
+    None
 }
 
 fn remove_if_there(path: &Path) -> Result<(), LearnError> {

@@ -9,15 +9,15 @@ use std::time::Instant;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
+use crate::learning::metrics::Means;
 use crate::networks::device::ComputeDevice;
-use crate::runs::agent_file::AgentFile;
-use crate::runs::buttons;
 use crate::runs::checkpoint::{Checkpoint, Loaded, Progress, Store};
 use crate::runs::evaluation::Evaluation;
 use crate::runs::examiner::Examiner;
 use crate::runs::heatmap::Heatmap;
+use crate::runs::init_from;
 use crate::runs::report::Report;
-use crate::runs::run_directory::{RunDirectory, read_config, read_selection};
+use crate::runs::run_directory::{RunDirectory, read_selection};
 use crate::runs::selection::{Candidates, Selection};
 use crate::runs::session::{Beginning, MakeWorlds, Session};
 use crate::runs::together::{Word, invite};
@@ -155,7 +155,7 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
     };
     match start {
         Start::Fresh(config) => {
-            let config = config.begun();
+            let config = TrainConfig { init_from: None, ..config.begun() };
             config.check()?;
             ComputeDevice::of(&config)?;
             new(config, Beginning::Nothing)
@@ -164,20 +164,8 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
             let config = config.begun();
             config.check()?;
             ComputeDevice::of(&config)?;
-            if AgentFile::is_at(&other) {
-                let (bytes, file) = AgentFile::read_whole(&other)?;
-                let order = buttons::order(&config.env, &file.card.config.env)?;
-                return new(config, Beginning::Agent(bytes, order));
-            }
-            let loaded = Store::new(&other, 1).newest(hooks.warn)?;
-            let loaded = loaded.ok_or_else(|| {
-                LearnError::content(
-                    &other,
-                    "no checkpoint to take weights from is here; give a run's directory, an agent's file or zoo:NAME",
-                )
-            })?;
-            let order = buttons::order(&config.env, &read_config(&other)?.env)?;
-            new(config, Beginning::Weights(Box::new(loaded), order))
+            let (beginning, found) = init_from::read(&other, &config, hooks.warn)?;
+            new(TrainConfig { init_from: Some(found), ..config }, beginning)
         }
         Start::Resume { settings } => {
             let (run, before) = RunDirectory::open(directory)?;
@@ -212,8 +200,10 @@ fn begin(start: Start, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun,
                      and --frames trains on",
                 ));
             }
-            let beginning =
-                loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)));
+            let beginning = match loaded {
+                Some(loaded) => Beginning::Everything(Box::new(loaded)),
+                None => init_from::read_again(directory, &config, hooks.warn)?,
+            };
             Ok(Begun { run, config, beginning, fresh: false, changed })
         }
     }
@@ -234,6 +224,8 @@ struct Trainer<'a> {
     seconds_before: f64,
     started: Instant,
     examiner: Examiner<'a>,
+    /// What a row whose evaluation was stopped would have said of learning.
+    unreported: Means,
 }
 
 impl<'a> Trainer<'a> {
@@ -262,6 +254,7 @@ impl<'a> Trainer<'a> {
             seconds_before,
             started,
             examiner,
+            unreported: Means::default(),
         }
     }
 
@@ -320,6 +313,9 @@ impl<'a> Trainer<'a> {
                 || hooks.stop.load(Ordering::Relaxed);
             let due =
                 last_report.elapsed().as_secs_f64() >= self.session.config.reporting.report_seconds;
+            if cut_short {
+                self.unreported.clone_from(&self.session.means);
+            }
             if over || due || evaluation.is_some() {
                 let seconds = last_report.elapsed().as_secs_f64().max(1e-9);
                 let mut report =
@@ -343,6 +339,7 @@ impl<'a> Trainer<'a> {
                     .for_each(|line| writer.heatmap(line));
             }
             writer.check()?;
+            self.run.check_is_there()?;
             let due = last_checkpoint.elapsed().as_secs_f64()
                 >= self.session.config.reporting.checkpoint_seconds;
             let save = over || (due && writer.keeps_up());
@@ -415,9 +412,13 @@ impl<'a> Trainer<'a> {
             candidates,
             sole_candidate: None,
             owes_evaluation: false,
+            learning: Means::default(),
             ..loaded.progress.clone()
         };
-        let mut report = self.report(0.0);
+        self.session.means.absorb(loaded.progress.learning.clone());
+        // Of its own rollouts nobody knows any more how long they took.
+        let mean_rate = self.session.frames as f64 / self.wall_seconds().max(1e-9);
+        let mut report = self.report(mean_rate);
         report.evaluation = Some(evaluation);
         report.evaluated_frames = self.examiner.candidates.frames;
         if loaded.progress.owes_evaluation {
@@ -451,6 +452,7 @@ impl<'a> Trainer<'a> {
         else {
             return Ok(None);
         };
+        self.run.check_is_there()?;
         self.run.write_selection(&selection, &closings, &self.session.config)?;
         store.keep_only(&[store.best_of(selection.selected.frames)])?;
         Ok(Some(Some(selection)))
@@ -485,6 +487,7 @@ impl<'a> Trainer<'a> {
             candidates: self.examiner.candidates.clone(),
             sole_candidate: None,
             owes_evaluation,
+            learning: std::mem::take(&mut self.unreported),
             returns: self.session.learner.returns.clone(),
             optimiser_steps: self
                 .session

@@ -37,7 +37,7 @@ const NOT_IDENTITY: &[&str] = &[
 /// Keys that are always shown beside a result if they are not at their usual value. Of the others,
 /// such as the learning rate, only those are shown that distinguish what would otherwise look the
 /// same.
-pub const SHOWN: [&str; 18] = [
+pub const SHOWN: [&str; 19] = [
     "rules",
     "preset",
     "hard",
@@ -48,6 +48,7 @@ pub const SHOWN: [&str; 18] = [
     "safety_budget",
     "constraints",
     "cost_scale",
+    "init_from",
     "curriculum",
     "changed",
     "tasks",
@@ -153,6 +154,8 @@ impl Config {
                 extended_from = read_changes(value, &mut flat);
             } else if key == "constraints" {
                 constraints = read_constraints(value, &mut flat)?;
+            } else if key == "init_from" {
+                flat.extend(read_init_from(value).map(|short| (key.clone(), short)));
             } else if key == "curriculum"
                 && value.as_array().is_some_and(|lessons| lessons.iter().all(Value::is_object))
             {
@@ -364,6 +367,13 @@ impl Config {
 /// The rule set of that name; the paper's where there is none, or one of another version.
 fn rule_set(name: Option<&String>) -> RuleSet {
     name.and_then(|name| name.to_lowercase().parse().ok()).unwrap_or_default()
+}
+
+/// What a run began with: the end of its place, and enough of its checksum to tell it from others.
+fn read_init_from(value: &Value) -> Option<String> {
+    let (place, sha256) = (value["place"].as_str()?, value["sha256"].as_str()?);
+    let name = place.trim_end_matches('/').rsplit('/').next().unwrap_or(place);
+    Some(format!("{name} {}", sha256.get(..8).unwrap_or(sha256)))
 }
 
 /// Settings that changed when the run was resumed, as the trainer lists them: those that

@@ -8,7 +8,7 @@ use crate::shared::Shared;
 use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use hasard_learn::runs::claim::sha256;
+use hasard_learn::runs::checksum::sha256;
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::Path;

@@ -22,6 +22,9 @@ use std::sync::{Mutex, PoisonError};
 /// A sweep of more hours than this is run only if its length was chosen.
 const HOURS_WITHOUT_ASKING: f64 = 48.0;
 
+/// Bytes of the longest name that common file systems have.
+const LONGEST_NAME: usize = 255;
+
 /// Runs the command.
 pub fn run(args: &SweepArgs) -> Outcome {
     if let Some(seed) = args.seed {
@@ -52,6 +55,7 @@ pub fn run(args: &SweepArgs) -> Outcome {
             all - pairs.len()
         );
     }
+    pairs.iter().try_for_each(|(job, _)| has_room(job))?;
     let longer =
         pairs.iter().map(|(job, config)| fits(job, config)).collect::<Result<Vec<_>, _>>()?;
     if !args.json {
@@ -83,6 +87,25 @@ pub fn run(args: &SweepArgs) -> Outcome {
     }
     let (jobs, rate) = (pairs.into_iter().map(|(job, _)| job).collect::<Vec<_>>(), plan.rate);
     execute(args, &sweep, &jobs, rate)
+}
+
+/// Refuses a run whose folder cannot be made.
+fn has_room(job: &Job) -> Result<(), Failure> {
+    if let Some(file) = job.directory.ancestors().find(|path| path.is_file()) {
+        return Err(Failure::bad(format!(
+            "{}: is a file, and the sweep's folders would be in it; choose another `out`",
+            file.display()
+        )));
+    }
+    let longest = job.directory.iter().map(OsStr::len).max().unwrap_or_default();
+    if longest > LONGEST_NAME {
+        return Err(Failure::bad(format!(
+            "{}: its options make a folder's name of {longest} bytes, more than the {LONGEST_NAME} of a file system; \
+             give some of them as [settings], which are no part of the name",
+            job.name()
+        )));
+    }
+    Ok(())
 }
 
 /// Refuses a run that lies where the sweep would train one by other settings; gives the frames of

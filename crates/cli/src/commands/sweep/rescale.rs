@@ -2,7 +2,8 @@
 
 use super::plan::two_digits;
 use crate::args::{Cli, Command};
-use crate::commands::train_settings::{configuration, with_rules};
+use crate::commands::resume::check_said_once;
+use crate::commands::train_settings::{check_length, configuration, with_rules};
 use crate::failure::Failure;
 use clap::{CommandFactory, FromArgMatches};
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
@@ -15,8 +16,15 @@ pub fn settings(job: &Job) -> Result<TrainConfig, Failure> {
     let wrong = |error: clap::Error| named(&crate::failure::usage_line(&error));
     let typed = Cli::command().try_get_matches_from(line).map_err(wrong)?;
     match (Cli::from_arg_matches(&typed).map_err(wrong)?.command, typed.subcommand()) {
-        (Command::Train(args), Some((_, typed))) => configuration(&with_rules(&args, typed))
-            .map_err(|error| error.about(&job.command_line("hasard"))),
+        (Command::Train(args), Some((_, typed))) => {
+            let args = with_rules(&args, typed);
+            let begun = configuration(&args).and_then(|config| {
+                check_length(&args, &config)?;
+                check_said_once(&args, typed)?;
+                Ok(config)
+            });
+            begun.map_err(|error| error.about(&job.command_line("hasard")))
+        }
         _ => Err(named("not a training")),
     }
 }

@@ -32,6 +32,9 @@ pub fn share(pairs: Vec<(Job, TrainConfig)>) -> Vec<(Job, TrainConfig)> {
 fn what_is_learned(config: &TrainConfig) -> TrainConfig {
     let mut config = config.clone().begun();
     config.version.clear();
+    if let Some(init_from) = &mut config.init_from {
+        init_from.place.clear();
+    }
     (config.learning.threads, config.sampling.samplers, config.sampling.world_threads) = (0, 0, 0);
     config
 }

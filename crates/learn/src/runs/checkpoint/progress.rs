@@ -1,6 +1,7 @@
 //! Counters and small state of a run, and the file that holds them.
 
 use crate::error::LearnError;
+use crate::learning::metrics::Means;
 use crate::learning::normaliser::Moments;
 use crate::runs::run_directory::read_regular;
 use crate::runs::selection::{Candidate, Candidates};
@@ -31,6 +32,9 @@ pub struct Progress {
     /// The run was stopped in the midst of this moment's evaluation, which is still to be made.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub owes_evaluation: bool,
+    /// What that moment's row says of learning, where the evaluation is still to be made.
+    #[serde(default, skip_serializing_if = "Means::is_empty")]
+    pub learning: Means,
     /// Statistics of each critic's returns.
     pub returns: Vec<Moments>,
     /// Steps of each optimiser.

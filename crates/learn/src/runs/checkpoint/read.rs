@@ -6,7 +6,7 @@ use crate::networks::ModelShape;
 use crate::runs::checkpoint::blocks::{check_block, parse_doubles, parse_floats, parse_words};
 use crate::runs::checkpoint::progress::{Progress, TRAINING, WEIGHTS, read_state};
 use crate::runs::checkpoint::write::{Checkpoint, parameter_names};
-use crate::runs::checksum::crc32c;
+use crate::runs::checksum::{crc32c, sha256};
 use crate::runs::run_directory::read_regular;
 use crate::sampling::sampler::SamplerState;
 use hasard_envs::LaneState;
@@ -66,6 +66,11 @@ impl Loaded {
     #[must_use]
     pub fn with(&self, progress: Progress) -> Checkpoint {
         Checkpoint { weights: self.weights.clone(), training: self.training.clone(), progress }
+    }
+
+    /// SHA-256 of the networks' parameters and the statistics of pixels.
+    pub(crate) fn weights_sha256(&self) -> String {
+        sha256(&self.weights)
     }
 
     /// The networks' parameters and the statistics of pixels, by name.

@@ -99,8 +99,13 @@ impl Store {
         let path = self.directory.join(format!("frames_{:012}", progress.frames)).join(STATE);
         let state = StateFile { progress: progress.clone(), ..StateFile::read(&path)? };
         let temporary = path.with_extension("partial");
-        write_through(&temporary, &state.text()?)?;
-        fs::rename(&temporary, &path).map_err(LearnError::file(&path, "write"))
+        let text = state.text()?;
+        let written = write_through(&temporary, &text)
+            .and_then(|()| fs::rename(&temporary, &path).map_err(LearnError::file(&path, "write")));
+        if written.is_err() {
+            let _ = fs::remove_file(&temporary);
+        }
+        written
     }
 
     /// Where the candidate of so many frames is.
