@@ -87,7 +87,7 @@ pub fn end_by(signal: i32) -> ! {
 
 fn listen() {
     if std::env::var_os(STOPS_WITH_INPUT).is_some() {
-        std::thread::spawn(|| {
+        let watch = std::thread::Builder::new().spawn(|| {
             let mut bytes = [0; 64];
             while std::io::stdin().read(&mut bytes).is_ok_and(|count| count > 0) {}
             // The terminal may have sent its signal to this process too: the two are one.
@@ -95,6 +95,8 @@ fn listen() {
                 heard(TERMINATE);
             }
         });
+        // Without it the command ends as the system ends it.
+        drop(watch);
     }
     #[cfg(unix)]
     {
@@ -109,7 +111,7 @@ fn listen() {
         unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
         // Without it the system's own handling stays: the command ends, if less tidily.
         if let Ok(mut signals) = signal_hook::iterator::Signals::new(signals) {
-            std::thread::spawn(move || signals.forever().for_each(heard));
+            drop(std::thread::Builder::new().spawn(move || signals.forever().for_each(heard)));
         }
         debug_assert_eq!((SIGINT, SIGTERM), (INTERRUPT, TERMINATE));
     }

@@ -73,7 +73,9 @@ pub struct Log {
 impl Log {
     fn new() -> Log {
         let (reports, heard) = channel();
-        Log { reports: Some(reports), thread: Some(std::thread::spawn(move || print(&heard))) }
+        // Where the system gives no thread, the training goes on without its lines.
+        let thread = std::thread::Builder::new().spawn(move || print(&heard)).ok();
+        Log { reports: Some(reports), thread }
     }
 
     fn show(&self, report: &Report) {

@@ -11,7 +11,6 @@ use std::hint::black_box;
 /// An environment that is stepped by random actions.
 struct Player {
     env: Env,
-    sizes: Vec<usize>,
     actions: Vec<u8>,
     deltas: Vec<f32>,
     rng: Rng,
@@ -22,9 +21,9 @@ impl Player {
     fn new(id: &str) -> Player {
         let env = Env::new(id, &EnvOptions { size: FrameSize::LEARNER, ..EnvOptions::default() })
             .expect("a registered id");
-        let (sizes, deltas) =
-            (env.action_space().sizes(), vec![0.0; env.action_space().deltas.len()]);
-        Player { actions: vec![0; sizes.len()], sizes, deltas, env, rng: Rng::new(1), seed: 0 }
+        let space = env.action_space();
+        let (actions, deltas) = (vec![0; space.groups.len()], vec![0.0; space.deltas.len()]);
+        Player { actions, deltas, env, rng: Rng::new(1), seed: 0 }
     }
 
     fn reset(&mut self) {
@@ -33,9 +32,8 @@ impl Player {
     }
 
     fn step(&mut self) {
-        for (action, &size) in self.actions.iter_mut().zip(&self.sizes) {
-            *action = self.rng.below(size as u32) as u8;
-        }
+        // Buttons alone: continuous parts stay at rest.
+        self.env.action_space().sample(&mut self.rng, &mut self.actions, &mut []);
         if self.env.step(&self.actions, &self.deltas).unwrap().ended() {
             self.reset();
         }

@@ -3,22 +3,18 @@
 //!
 //! The results are the same for any number of threads.
 
-use hasard_engine::math::Rng;
-use hasard_envs::{EnvOptions, FrameSize, VecEnv, VecOptions};
+use hasard_envs::{EnvOptions, FrameSize, Rng, VecEnv, VecOptions};
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let options = EnvOptions { size: FrameSize::LEARNER, ..EnvOptions::default() };
     let lanes = VecOptions { lanes: 32, threads: 2, seed: 1, ..VecOptions::default() };
     let mut envs = VecEnv::new("RemedyRushLevel1-v0", &options, lanes)?;
-    let sizes = envs.action_space().sizes();
     let mut batch = envs.whole_batch();
     envs.reset(&mut batch)?;
     let (mut random, mut episodes, begun) = (Rng::new(7), Vec::new(), Instant::now());
     for _ in 0..600 {
-        for (index, action) in batch.actions.iter_mut().enumerate() {
-            *action = random.below(sizes[index % sizes.len()] as u32) as u8;
-        }
+        envs.action_space().sample(&mut random, &mut batch.actions, &mut batch.deltas);
         // Observations, rewards, costs and flags of all lanes are in the batch afterwards. Lanes
         // that end start anew by themselves.
         envs.step(&mut batch)?;

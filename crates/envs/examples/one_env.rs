@@ -1,20 +1,20 @@
 //! One environment, one episode of random actions: `cargo run --release -p hasard-envs --example
 //! one_env`.
 
-use hasard_engine::math::Rng;
-use hasard_envs::{Env, EnvOptions};
+use hasard_envs::{Env, EnvOptions, Rng};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut env = Env::new("VolcanicVentureLevel1-v0", &EnvOptions::default())?;
-    let sizes = env.action_space().sizes();
-    println!("observation {:?}, sub-actions {sizes:?}", env.observation_shape());
+    let space = env.action_space().clone();
+    println!("observation {:?}, sub-actions {:?}", env.observation_shape(), space.sizes());
     let mut observation = vec![0; env.observation_shape().iter().product()];
+    // One choice of each group of buttons; 0 is none of them.
+    let mut action = vec![0; space.groups.len()];
     let mut random = Rng::new(7);
     env.reset(1);
     loop {
         env.observe(&mut observation);
-        // One choice of each group of buttons; 0 is none of them.
-        let action: Vec<u8> = sizes.iter().map(|&size| random.below(size as u32) as u8).collect();
+        space.sample(&mut random, &mut action, &mut []);
         let step = env.step(&action, &[])?;
         if step.ended() {
             break;

@@ -2,8 +2,7 @@
 //! cost, plays its first steps, and plans again: `cargo run --release -p hasard-envs --example
 //! search`.
 
-use hasard_engine::math::Rng;
-use hasard_envs::{Env, EnvOptions};
+use hasard_envs::{Env, EnvOptions, Rng};
 
 /// Plans that are tried, steps of each, and steps of the best that are played.
 const PLANS: usize = 40;
@@ -12,7 +11,7 @@ const PLAYED: usize = 8;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut env = Env::new("RemedyRushLevel1-v0", &EnvOptions::default())?;
-    let sizes = env.action_space().sizes();
+    let space = env.action_space().clone();
     let mut random = Rng::new(7);
     env.reset(1);
     'episode: loop {
@@ -22,13 +21,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             env.restore(&here)?;
             // A plan holds each action for a while: moves that change at every step lead nowhere.
             let (mut plan, mut worth) = (Vec::new(), 0.0);
-            let mut action = Vec::new();
+            let mut action = vec![0; space.groups.len()];
             for step in 0..AHEAD {
                 if step % 6 == 0 {
-                    action = sizes
-                        .iter()
-                        .map(|&size| random.below(size as u32) as u8)
-                        .collect::<Vec<u8>>();
+                    space.sample(&mut random, &mut action, &mut []);
                 }
                 let result = env.step(&action, &[])?;
                 worth += result.reward - 10.0 * result.cost;

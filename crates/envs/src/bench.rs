@@ -1,9 +1,7 @@
 //! How fast a batch of worlds runs.
 
 use crate::error::EnvError;
-use crate::interface::batch::Batch;
 use crate::options::EnvOptions;
-use crate::policies::policy::draw_action;
 use crate::scenarios::common::spec::EPISODE_TICS;
 use crate::vec_env::{VecEnv, VecOptions};
 use hasard_engine::math::Rng;
@@ -44,28 +42,16 @@ pub fn bench(
     let hired = threads.saturating_sub(1);
     let mut worlds =
         VecEnv::new(id, options, VecOptions { lanes, threads: hired, ..VecOptions::default() })?;
-    let sizes = worlds.action_space().sizes();
+    let space = worlds.action_space().clone();
     let mut rng = Rng::new(0);
     let mut batch = worlds.whole_batch();
     worlds.reset(&mut batch)?;
-    let draw = |rng: &mut Rng, batch: &mut Batch| {
-        let deltas = batch.deltas.len() / lanes;
-        for lane in 0..lanes {
-            let actions = &mut batch.actions[lane * sizes.len()..(lane + 1) * sizes.len()];
-            draw_action(
-                rng,
-                &sizes,
-                actions,
-                &mut batch.deltas[lane * deltas..(lane + 1) * deltas],
-            );
-        }
-    };
     let episode = u64::from(EPISODE_TICS.div_ceil(options.frame_skip));
     let (mut steps, mut resets, mut elapsed) = (0, 0, 0.0);
     let mut whole = None;
     let start = Instant::now();
     while elapsed < seconds {
-        draw(&mut rng, &mut batch);
+        space.sample(&mut rng, &mut batch.actions, &mut batch.deltas);
         worlds.step(&mut batch)?;
         steps += 1;
         resets += batch.episodes.len() as u64;

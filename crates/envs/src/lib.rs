@@ -51,6 +51,9 @@ mod vec_env;
 
 pub use bench::{BenchReport, bench};
 pub use error::EnvError;
+/// The world and the renderer beneath, in the version that these environments use.
+pub use hasard_engine as engine;
+pub use hasard_engine::math::Rng;
 pub use hasard_engine::render::FrameSize;
 pub use interface::batch::{Batch, Episode, EpisodeCost, episode_costs};
 pub use interface::buffer::{Buffer, Memory};

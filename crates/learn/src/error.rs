@@ -28,6 +28,8 @@ pub enum LearnError {
     Worlds(String),
     /// A thread of the run ended in a panic.
     Panic(String),
+    /// The system gives no further thread.
+    Thread(std::io::Error),
     /// The loss or a gradient is no longer a number.
     Diverged(String),
     /// The workers of the run cannot go on together.
@@ -104,6 +106,10 @@ impl std::fmt::Display for LearnError {
                     _ => Ok(()),
                 }
             }
+            LearnError::Thread(source) => write!(
+                f,
+                "the system gives no further thread ({source}); give fewer with --threads, or raise its limit (`ulimit -u`)"
+            ),
             LearnError::Content { path, problem } => {
                 write!(f, "{}: {}", path.display(), OneLine(problem))
             }
@@ -114,7 +120,7 @@ impl std::fmt::Display for LearnError {
 impl std::error::Error for LearnError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            LearnError::File { source, .. } => Some(source),
+            LearnError::File { source, .. } | LearnError::Thread(source) => Some(source),
             _ => None,
         }
     }

@@ -1,7 +1,7 @@
 //! Work dealt out to threads.
 
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 /// Items dealt into at most so many runs as equal as they can be, the longer ones first; none is
 /// empty unless all are.
@@ -25,7 +25,7 @@ pub fn pieces(threads: usize) -> usize {
 
 /// Does pieces of work on as many threads as there is scratch, this one among them. Each takes the
 /// next piece, in their order, when it is done with one, so that whatever else the machine does
-/// delays all of them alike.
+/// delays all of them alike. Threads that the system does not give leave their work to the others.
 ///
 /// # Panics
 /// If there is no scratch.
@@ -34,23 +34,22 @@ pub fn in_parallel<S: Send, W: FnOnce(&mut S) + Send>(
     work: impl IntoIterator<Item = W, IntoIter: Send>,
 ) {
     let (own, others) = scratch.split_first_mut().expect("there is a thread");
-    let mut work = work.into_iter();
+    let work = work.into_iter();
     if others.is_empty() {
         return work.for_each(|piece| piece(own));
     }
-    let Some(first) = work.next() else { return };
-    let work = Mutex::new(work);
+    let work = Mutex::new(work.peekable());
     // The lock is held while a piece is taken, not while it is done.
-    let next = || work.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).next();
+    let left = || work.lock().unwrap_or_else(PoisonError::into_inner);
+    let next = || left().next();
     std::thread::scope(|scope| {
         for scratch in others {
-            let Some(piece) = next() else { break };
-            scope.spawn(move || {
-                piece(scratch);
-                std::iter::from_fn(next).for_each(|piece| piece(scratch));
-            });
+            let all = move || std::iter::from_fn(next).for_each(|piece| piece(scratch));
+            let is_over = left().peek().is_none();
+            if is_over || std::thread::Builder::new().spawn_scoped(scope, all).is_err() {
+                break;
+            }
         }
-        first(own);
         std::iter::from_fn(next).for_each(|piece| piece(own));
     });
 }

@@ -115,7 +115,8 @@ fn document(title: &str, entries: Vec<Entry>, refused: &[(String, String)]) -> D
         first.text.insert(
             0,
             "Return, cost and what follows from them were measured by `hasard verify`: the agent's file played the same \
-             episodes again, to the bit. Algorithm, frames and command are what the agent's file and its author say. \
+             episodes again, to the bit. Algorithm, frames and command are what the agent's file and its author say; frames \
+             are those of its own run, without those of an agent that it began with. \
              Green: the cost's mean is within the budget, on green ground up to the upper end of its 95 % interval."
                 .to_owned(),
         );

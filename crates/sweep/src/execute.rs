@@ -84,33 +84,36 @@ pub fn run_jobs(
     let queue = Mutex::new((0..jobs.len()).map(|index| (index, false)).collect::<VecDeque<_>>());
     let queue = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let summary = Mutex::new(Summary::default());
-    std::thread::scope(|scope| {
-        for _ in 0..parallel {
-            scope.spawn(|| {
-                while !stop.soon.load(Ordering::SeqCst) {
-                    let Some((index, waits)) = queue().pop_front() else { break };
-                    let job = &jobs[index];
-                    let event = run_one(program, job, share, stop, |event| report(index, event));
-                    if event != Event::Elsewhere || !waits {
-                        report(index, &event);
-                    }
-                    let mut summary = summary.lock().unwrap_or_else(PoisonError::into_inner);
-                    match event {
-                        Event::Elsewhere => {
-                            drop(summary);
-                            queue().push_back((index, true));
-                            std::thread::sleep(if waits { ASK_EVERY } else { LOOK_EVERY });
-                        }
-                        Event::Failed(why) => {
-                            summary.failed.push((job.directory.display().to_string(), why))
-                        }
-                        Event::AlreadyFinished => summary.skipped += 1,
-                        Event::Stopped => summary.stopped += 1,
-                        Event::Started(_) | Event::Finished(_) => summary.finished += 1,
-                    }
+    let work = || {
+        while !stop.soon.load(Ordering::SeqCst) {
+            let Some((index, waits)) = queue().pop_front() else { break };
+            let job = &jobs[index];
+            let event = run_one(program, job, share, stop, |event| report(index, event));
+            if event != Event::Elsewhere || !waits {
+                report(index, &event);
+            }
+            let mut summary = summary.lock().unwrap_or_else(PoisonError::into_inner);
+            match event {
+                Event::Elsewhere => {
+                    drop(summary);
+                    queue().push_back((index, true));
+                    std::thread::sleep(if waits { ASK_EVERY } else { LOOK_EVERY });
                 }
-            });
+                Event::Failed(why) => {
+                    summary.failed.push((job.directory.display().to_string(), why))
+                }
+                Event::AlreadyFinished => summary.skipped += 1,
+                Event::Stopped => summary.stopped += 1,
+                Event::Started(_) | Event::Finished(_) => summary.finished += 1,
+            }
         }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..parallel {
+            // Where the system gives no thread, the others do its work.
+            let _ = std::thread::Builder::new().spawn_scoped(scope, work);
+        }
+        work();
     });
     let mut summary = summary.into_inner().unwrap_or_else(PoisonError::into_inner);
     summary.failed.sort();

@@ -89,7 +89,6 @@ impl std::str::FromStr for Policy {
 #[derive(Clone, Debug)]
 pub struct PolicyRun {
     policy: Policy,
-    sizes: Vec<usize>,
     rng: Rng,
     step: u32,
     actions: Vec<u8>,
@@ -104,12 +103,10 @@ impl PolicyRun {
     /// When the policy is for another scenario.
     pub fn new(policy: Policy, env: &Env, seed: u64) -> Result<PolicyRun, EnvError> {
         let space = env.action_space();
-        let sizes = space.sizes();
-        let (actions, deltas) = (vec![0; sizes.len()], vec![0.0; space.deltas.len()]);
+        let (actions, deltas) = (vec![0; space.groups.len()], vec![0.0; space.deltas.len()]);
         let carrier = if policy == Policy::Carrier { Some(Carrier::new(env)?) } else { None };
         Ok(PolicyRun {
             policy,
-            sizes,
             rng: Rng::for_lane(seed, POLICY_STREAM),
             step: 0,
             actions,
@@ -125,7 +122,7 @@ impl PolicyRun {
         match self.policy {
             Policy::Random { hold_steps } => {
                 if step.is_multiple_of(hold_steps) {
-                    draw_action(&mut self.rng, &self.sizes, &mut self.actions, &mut self.deltas);
+                    env.action_space().sample(&mut self.rng, &mut self.actions, &mut self.deltas);
                 }
                 Move::Action(&self.actions, &self.deltas)
             }
@@ -149,17 +146,6 @@ impl PolicyRun {
                 Move::Buttons(if step < after_steps { Command::default() } else { command })
             }
         }
-    }
-}
-
-/// Draws an action: uniform in every part.
-pub(crate) fn draw_action(rng: &mut Rng, sizes: &[usize], actions: &mut [u8], deltas: &mut [f32]) {
-    for (action, &size) in actions.iter_mut().zip(sizes) {
-        *action = rng.below(size as u32) as u8;
-    }
-    for delta in deltas {
-        // 24 random bits fill an f32's precision over [-1, 1).
-        *delta = (rng.next_u64() >> 40) as f32 / (1 << 23) as f32 - 1.0;
     }
 }
 

@@ -1,6 +1,7 @@
 //! Action spaces: groups of exclusive buttons, and delta buttons; and the names of buttons.
 
 use crate::error::{EnvError, excerpt};
+use hasard_engine::math::Rng;
 use hasard_engine::world::{Buttons, Command};
 
 /// Degrees per tic of a delta button at full deflection.
@@ -112,6 +113,21 @@ impl ActionSpace {
     #[must_use]
     pub fn sizes(&self) -> Vec<usize> {
         self.groups.iter().map(|group| group.buttons.len() + 1).collect()
+    }
+
+    /// Draws actions, uniform in every part: `actions` and `deltas` of one lane, or of several, one
+    /// lane after the other. Continuous parts lie in [-1, 1).
+    pub fn sample(&self, rng: &mut Rng, actions: &mut [u8], deltas: &mut [f32]) {
+        let mut deltas = deltas.chunks_mut(self.deltas.len().max(1));
+        for actions in actions.chunks_mut(self.groups.len().max(1)) {
+            for (action, group) in actions.iter_mut().zip(&self.groups) {
+                *action = rng.below(group.buttons.len() as u32 + 1) as u8;
+            }
+            for delta in deltas.next().unwrap_or_default() {
+                // 24 random bits fill an f32's precision over [-1, 1).
+                *delta = (rng.next_u64() >> 40) as f32 / (1 << 23) as f32 - 1.0;
+            }
+        }
     }
 
     /// What is wrong with an action, if anything.
@@ -241,6 +257,28 @@ mod tests {
             let id = EnvId { scenario, level: 1 };
             ActionSpace::of(id, rules, hard, full).sizes().iter().product()
         })
+    }
+
+    /// Every choice comes, and several lanes at once are lanes one after the other.
+    #[test]
+    fn samples_are_actions_of_the_space() {
+        let space = space("ArmamentBurdenLevel1-v0", true);
+        let (groups, parts, lanes) = (space.groups.len(), space.deltas.len(), 200);
+        assert!(groups > 0 && parts > 0);
+        let (mut actions, mut deltas) = (vec![9; lanes * groups], vec![9.0; lanes * parts]);
+        space.sample(&mut Rng::new(3), &mut actions, &mut deltas);
+        let mut alone = Rng::new(3);
+        for (actions, deltas) in actions.chunks(groups).zip(deltas.chunks(parts)) {
+            space.check(0, actions, deltas).unwrap();
+            let (mut own, mut parts) = (vec![0; groups], vec![0.0; parts]);
+            space.sample(&mut alone, &mut own, &mut parts);
+            assert_eq!((own.as_slice(), parts.as_slice()), (actions, deltas));
+        }
+        for (group, size) in space.sizes().into_iter().enumerate() {
+            let drawn = actions.iter().skip(group).step_by(groups);
+            let all: std::collections::BTreeSet<u8> = drawn.copied().collect();
+            assert_eq!(all.len(), size, "{group}");
+        }
     }
 
     #[test]

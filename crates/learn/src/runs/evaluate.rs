@@ -62,11 +62,12 @@ pub fn play_traced(
         let running: Vec<_> = parts
             .into_iter()
             .map(|(worlds, agent, own)| {
-                scope.spawn(move || play_all(stop, policy, worlds, agent, own))
+                let all = move || play_all(stop, policy, worlds, agent, own);
+                std::thread::Builder::new().spawn_scoped(scope, all).map_err(LearnError::Thread)
             })
             .collect();
         for thread in running {
-            let played = thread
+            let played = thread?
                 .join()
                 .map_err(|panic| LearnError::Panic(panic_text("an evaluation", &*panic)))?;
             episodes.push(played?);

@@ -127,7 +127,9 @@ fn product_rate(kernels: Simd, threads: usize) -> f64 {
             }
             count
         };
-        let others: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let others: Vec<_> = (0..threads)
+            .filter_map(|_| std::thread::Builder::new().spawn_scoped(scope, work).ok())
+            .collect();
         others.into_iter().map(|other| other.join().unwrap_or(0)).sum()
     });
     count as f64 * 2.0 * (SIDE as f64).powi(3) / start.elapsed().as_secs_f64()

@@ -270,7 +270,12 @@ impl Session {
         let gatherer = if sampling.synchronous {
             Gatherer::in_turn(samplers, sampling.rollout, learner.publish())
         } else {
-            Gatherer::ahead(samplers, sampling.rollout, sampling.accumulated + 1, learner.publish())
+            Gatherer::ahead(
+                samplers,
+                sampling.rollout,
+                sampling.accumulated + 1,
+                learner.publish(),
+            )?
         };
         let means = Means::default();
         Ok(Session {

@@ -40,7 +40,7 @@ impl Writer {
         let (failing, errors) = channel();
         let waiting = Arc::new(AtomicUsize::new(0));
         let written = Arc::clone(&waiting);
-        let thread = std::thread::spawn(move || {
+        let thread = std::thread::Builder::new().spawn(move || {
             for job in queue {
                 let result = match job {
                     Job::Row(frames, row) => log.write(frames, &row),
@@ -59,6 +59,7 @@ impl Writer {
                 }
             }
         });
+        let thread = thread.map_err(LearnError::Thread)?;
         Ok(Writer { jobs: Some(jobs), waiting, errors, thread: Some(thread) })
     }
 

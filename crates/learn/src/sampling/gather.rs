@@ -88,14 +88,12 @@ impl Gatherer {
         steps: usize,
         ahead: usize,
         published: Published,
-    ) -> Gatherer {
+    ) -> Result<Gatherer, LearnError> {
         let newest = newest(published);
         let over = Arc::new(AtomicBool::new(false));
         let hire = |sampler| hire(sampler, steps, ahead, Arc::clone(&newest), Arc::clone(&over));
-        Gatherer {
-            crew: Crew::Ahead { workers: samplers.into_iter().map(hire).collect(), over },
-            newest,
-        }
+        let workers = samplers.into_iter().map(hire).collect::<Result<_, _>>()?;
+        Ok(Gatherer { crew: Crew::Ahead { workers, over }, newest })
     }
 
     /// Waits for the next rollout.
@@ -190,13 +188,13 @@ fn hire(
     ahead: usize,
     newest: Arc<Newest>,
     over: Arc<AtomicBool>,
-) -> Worker {
+) -> Result<Worker, LearnError> {
     let (asks, asked) = channel();
     let (answering, answers) = channel();
     for _ in 0..ahead {
         let _ = asks.send(Ask::Fill(Box::default()));
     }
-    let thread = std::thread::spawn(move || {
+    let thread = std::thread::Builder::new().spawn(move || {
         for ask in asked {
             if over.load(Ordering::Relaxed) {
                 return;
@@ -212,7 +210,8 @@ fn hire(
             }
         }
     });
-    Worker { asks, answers, waiting: std::collections::VecDeque::new(), thread: Some(thread) }
+    let thread = Some(thread.map_err(LearnError::Thread)?);
+    Ok(Worker { asks, answers, waiting: std::collections::VecDeque::new(), thread })
 }
 
 /// A panic as one line.
