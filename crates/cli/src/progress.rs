@@ -1,5 +1,6 @@
 //! How far a training is: a bar on a terminal, a plain line now and then in a log, or nothing.
 
+use crate::failure::presentable;
 use hasard_learn::runs::progress_bar::Bar;
 use hasard_learn::runs::report::Report;
 use std::io::IsTerminal;
@@ -48,7 +49,7 @@ impl Progress {
     /// Prints a line.
     pub fn print(&self, line: &str) {
         match self {
-            Progress::Bar(bar) => bar.print(line),
+            Progress::Bar(bar) => bar.print(&presentable(line)),
             _ => note!("{line}"),
         }
     }

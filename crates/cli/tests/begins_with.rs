@@ -43,12 +43,43 @@ fn a_sweep_knows_what_its_runs_began_with() {
     // What still lacks frames goes on, with the command that began it.
     folder.file("s.toml", options(512, zoo).as_bytes());
     assert!(folder.ok(line).contains("\"finished\":1"));
-    // Weights of its own are another run, and are not trained over it.
+    // Its own beginning may be said again, another is refused.
     let path = "runs/RemedyRushLevel1-v0/PPO";
     let run = std::fs::read_dir(folder.0.join(path)).unwrap().next().unwrap().unwrap().path();
     let run = format!("{path}/{}/seed1", run.file_name().unwrap().to_string_lossy());
     let train = "train RemedyRushLevel1 --resume --algo PPO --out";
     let said = folder.refused(&format!("{train} {run} --init-from zoo:VolcanicVentureLevel1"));
     assert!(said.contains("began with other weights, of zoo:RemedyRushLevel1"), "{said}");
+    let said = folder.refused(&format!("{train} {run} --init-from nowhere"));
+    assert!(said.contains("nowhere") && !said.contains("other weights"), "{said}");
     folder.ok(&format!("{train} {run} --init-from zoo:RemedyRushLevel1 --frames 768 --quiet"));
+}
+
+/// What a sweep's runs began with may be gone, or trained on, once they have it.
+#[test]
+fn a_sweep_needs_no_weights_that_its_runs_have_had() {
+    let folder = Folder::new("begins_with_gone");
+    let small = "--algo PPO --envs 2 --threads 1 --set sampling.rollout=8 --set network.dense=[32] --set network.recurrent=32 \
+                 --eval-every 0 --quiet";
+    folder.ok(&format!("train RemedyRushLevel1 {small} --frames 64 --out base"));
+    let sweep = |frames: u32| {
+        format!(
+            "out = \"runs\"\nframes = {frames}\nscenarios = [\"RemedyRush\"]\nlevels = [1]\nalgorithms = [\"PPO\"]\n\
+             seeds = [1]\n[options]\ninit-from = \"base\"\nthreads = 1\nenvs = 2\neval-every = 0\n[settings]\n\
+             sampling.rollout = 8\nnetwork.dense = [32]\nnetwork.recurrent = 32\n"
+        )
+    };
+    folder.file("s.toml", sweep(64).as_bytes());
+    assert!(folder.ok("sweep s.toml --json").contains("\"finished\":1"));
+    folder.ok("train RemedyRushLevel1 --resume --frames 128 --quiet --out base");
+    assert!(folder.ok("sweep s.toml --json").contains("\"skipped\":1"));
+    std::fs::remove_dir_all(folder.0.join("base")).unwrap();
+    assert!(folder.ok("sweep s.toml --json").contains("\"skipped\":1"));
+    folder.file("s.toml", sweep(128).as_bytes());
+    assert!(folder.ok("sweep s.toml --json").contains("\"finished\":1"));
+    // A run from nothing began with nothing that could be named.
+    folder.ok(&format!("train RemedyRushLevel1 {small} --frames 64 --out plain"));
+    let said = folder
+        .refused("train RemedyRushLevel1 --resume --out plain --init-from zoo:RemedyRushLevel1");
+    assert!(said.contains("says of no other weights"), "{said}");
 }

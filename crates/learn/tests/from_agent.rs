@@ -7,7 +7,7 @@ use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
 use hasard_learn::runs::run_directory::{read_config, read_selection};
 use hasard_learn::runs::trainer::Start;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A run that has selected a checkpoint, and the file of its agent.
 fn trained(name: &str) -> (TrainConfig, PathBuf, PathBuf) {
@@ -76,13 +76,15 @@ fn a_run_that_goes_on_from_nothing_has_the_weights_that_it_began_with() {
         tiny::run(Start::RESUME, &killed).0.unwrap();
         assert_eq!(tiny::weights(&killed), tiny::weights(&whole), "{name}");
         let apart = read_config(&killed).unwrap().init_from.unwrap();
-        assert_eq!((Path::new(&apart.place), apart.sha256.len()), (place.as_path(), 64));
-        // Other weights at the place are not those that it began with.
+        assert_eq!((apart.place.as_path(), apart.sha256.len()), (place.as_path(), 64));
+        // Other weights at the place are not those that it began with; these may be elsewhere.
         fs::remove_dir_all(killed.join("checkpoints")).unwrap();
         for name in ["metrics.jsonl", "selected.json"] {
             fs::remove_file(killed.join(name)).unwrap();
         }
+        let elsewhere = place.with_extension("elsewhere");
         if place.is_file() {
+            fs::copy(place, &elsewhere).unwrap();
             fs::write(place, export_latest(&whole).unwrap()).unwrap();
         } else {
             let settings = vec![format!("frames={}", config.frames + config.frames_per_rollout())];
@@ -94,8 +96,17 @@ fn a_run_that_goes_on_from_nothing_has_the_weights_that_it_began_with() {
             fs::remove_file(place).unwrap();
             let refused = tiny::run(Start::RESUME, &killed).0.unwrap_err();
             assert!(refused.contains("are gone"), "{refused}");
+            assert_eq!(fs::read(killed.join("config.json")).unwrap(), written);
+            let settings = vec![format!("init_from.place={}", elsewhere.display())];
+            tiny::run(Start::Resume { settings }, &killed).0.unwrap();
+            assert_eq!(tiny::weights(&killed), tiny::weights(&whole));
+            let known = read_config(&killed).unwrap();
+            assert_eq!(
+                (known.init_from.unwrap().place, known.changes),
+                (elsewhere.clone(), vec![])
+            );
+            fs::remove_file(elsewhere).unwrap();
         }
-        assert_eq!(fs::read(killed.join("config.json")).unwrap(), written);
         fs::remove_dir_all(whole).unwrap();
         fs::remove_dir_all(killed).unwrap();
     }

@@ -131,30 +131,62 @@ fn a_run_stopped_in_any_evaluation_equals_the_uninterrupted_one() {
     fs::remove_dir_all(straight).unwrap();
 }
 
-/// A run whose folder was moved made another in its place, ended well and was torn in two.
-#[cfg(unix)]
-#[test]
-fn a_run_whose_folder_is_moved_ends_there() {
-    let (path, away) = (tiny::directory("stopped-moved"), tiny::directory("stopped-away"));
+/// Trains until it is refused, with `moved` called with every report and before every evaluation;
+/// the words of the refusal.
+fn refused_once_moved(path: &Path, moved: &(dyn Fn(bool) + Sync)) -> String {
     let stop = AtomicBool::new(false);
-    let mut hooks = Hooks {
-        stop: &stop,
-        report: &mut |_| fs::rename(&path, &away).unwrap(),
-        warn: &mut |_| {},
+    let mut hooks = Hooks { stop: &stop, report: &mut |_| moved(false), warn: &mut |_| {} };
+    let worlds = |_: &EnvConfig, options: VecOptions| {
+        if matches!(options.autoreset, Autoreset::Disabled) {
+            moved(true);
+        }
+        VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Risk::new(true))))
     };
-    let worlds =
-        |_: &EnvConfig, options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Risk::new(true))));
-    let message = train(Start::Fresh(config()), &path, &worlds, &mut hooks)
+    let message = train(Start::Fresh(config()), path, &worlds, &mut hooks)
         .map(|_| ())
         .unwrap_err()
         .to_string();
     assert!(message.contains("was moved or removed") && message.contains("--resume"), "{message}");
-    assert!(!path.exists());
-    // Put back, it goes on: from the beginning, as it had no checkpoint yet.
-    fs::rename(&away, &path).unwrap();
-    tiny::run(Start::RESUME, &path).0.unwrap();
-    assert!(path.join("selected.json").exists());
-    fs::remove_dir_all(path).unwrap();
+    message
+}
+
+/// A run whose folder was moved made another in its place, ended well and was torn in two.
+#[cfg(unix)]
+#[test]
+fn a_run_whose_folder_is_moved_ends_there() {
+    for in_evaluation in [false, true] {
+        let (path, away) = (tiny::directory("stopped-moved"), tiny::directory("stopped-away"));
+        refused_once_moved(&path, &|evaluates| {
+            if evaluates == in_evaluation && path.exists() {
+                fs::rename(&path, &away).unwrap();
+            }
+        });
+        assert!(!path.exists(), "{in_evaluation}");
+        // Put back, it goes on: from the beginning, as it had no checkpoint yet.
+        fs::rename(&away, &path).unwrap();
+        tiny::run(Start::RESUME, &path).0.unwrap();
+        assert!(path.join("selected.json").exists());
+        fs::remove_dir_all(path).unwrap();
+    }
+}
+
+/// Another run had begun at the old place: what it has so far is its own.
+#[cfg(unix)]
+#[test]
+fn a_moved_run_leaves_what_is_in_its_place() {
+    let (path, away) = (tiny::directory("stopped-placed"), tiny::directory("stopped-placed-away"));
+    refused_once_moved(&path, &|_| {
+        if !away.exists() {
+            fs::rename(&path, &away).unwrap();
+            fs::create_dir_all(path.join("checkpoints")).unwrap();
+            fs::write(path.join("config.json"), "another's").unwrap();
+        }
+    });
+    assert_eq!(fs::read(path.join("config.json")).unwrap(), b"another's");
+    assert!(path.join("checkpoints").exists());
+    for at in [path, away] {
+        fs::remove_dir_all(at).unwrap();
+    }
 }
 
 /// A run that ended without an evaluation is evaluated when it is resumed and asked for one.

@@ -10,6 +10,7 @@ pub mod eval;
 pub mod export_agent;
 pub mod export_wad;
 pub mod highlights;
+mod init_from;
 pub mod metrics;
 pub mod new;
 pub mod play;

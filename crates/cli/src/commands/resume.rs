@@ -1,7 +1,7 @@
 //! `hasard train --resume`: a flag that contradicts the run in the directory changes the run where
 //! a run may change, and is refused instead of ignored elsewhere.
 
-use super::train_settings::{configuration, init_from};
+use super::train_settings::configuration;
 use crate::args::TrainArgs;
 use crate::failure::Failure;
 use clap::ArgMatches;
@@ -76,33 +76,6 @@ pub fn check_said_once(args: &TrainArgs, typed: &ArgMatches) -> Result<(), Failu
     Ok(())
 }
 
-/// Refuses `--init-from` where the run began otherwise; the words that began it are welcome.
-pub fn check_init_from(
-    args: &TrainArgs,
-    saved: &TrainConfig,
-    directory: &Path,
-) -> Result<(), Failure> {
-    let Some(place) = &args.init_from else { return Ok(()) };
-    let (typed, run) = (place.display(), directory.display());
-    let Some(began) = &saved.init_from else {
-        return Err(Failure::bad(format!(
-            "--init-from {typed}: the run in {run} began with weights of its own; leave it out, or choose another --out"
-        )));
-    };
-    let same = match init_from(place) {
-        Ok(found) => found.sha256 == began.sha256,
-        // Weights that a run has had need not be there any more.
-        Err(_) => Path::new(&began.place) == place,
-    };
-    if same {
-        return Ok(());
-    }
-    Err(Failure::bad(format!(
-        "--init-from {typed}: the run in {run} began with other weights, of {}; leave it out, or choose another --out",
-        began.place
-    )))
-}
-
 /// The settings that are to be others from here on, each as `NAME=VALUE`. Flags that were typed and
 /// say something else than the run's settings are refused where a run cannot change; those that
 /// repeat them are welcome: a sweep resumes a run with the command that began it.
@@ -115,7 +88,6 @@ pub fn settings(
     let given = |id: &str| typed.value_source(id) == Some(ValueSource::CommandLine);
     // What the command asks for, with the run's own settings wherever other defaults hang on them.
     let mut args = args.clone();
-    args.init_from = None;
     if !given("algo") {
         args.algo = saved.algorithm.name().into();
     }

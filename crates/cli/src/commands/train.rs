@@ -1,7 +1,7 @@
 //! `hasard train`: an agent from pixels.
 
 use super::sweep::plan;
-use super::train_settings::{check_length, configuration, unread, with_rules};
+use super::train_settings::{fresh, unread};
 use crate::args::TrainArgs;
 use crate::automap;
 use crate::episode_lines::worth;
@@ -60,17 +60,15 @@ pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
             );
             return Err(Failure::bad(problem));
         }
-        super::resume::check_init_from(args, &config, &directory)?;
-        let settings = super::resume::settings(args, typed, &config, &directory)?;
+        let mut settings = super::resume::settings(args, typed, &config, &directory)?;
+        settings.extend(super::init_from::moved(args, &config, &directory)?);
         let config = config.with_all(&settings).map_err(Failure::bad)?;
         (Start::Resume { settings }, config)
     } else {
         if args.resume && !args.quiet {
             note!("no run is in {}: one begins there", directory.display());
         }
-        let config = configuration(&with_rules(args, typed))?;
-        check_length(args, &config)?;
-        super::resume::check_said_once(args, typed)?;
+        let config = fresh(args, typed)?;
         if !args.quiet {
             unread(args, config.algorithm).iter().for_each(|line| note!("{line}"));
         }

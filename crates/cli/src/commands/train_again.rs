@@ -26,7 +26,7 @@ pub fn command(config: &TrainConfig) -> String {
         config.algorithm, config.preset, config.frames, config.seed
     )];
     if let Some(init_from) = &config.init_from {
-        words.push(format!("--init-from {}", quote(Path::new(&init_from.place))));
+        words.push(format!("--init-from {}", quote(&init_from.place)));
     }
     // Said always where the preset's own rules might be others.
     if env.rules != usual.rules || config.preset == Preset::Tables {

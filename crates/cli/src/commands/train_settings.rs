@@ -1,16 +1,15 @@
 //! The settings of a fresh run, from the options of `hasard train`.
 
+use super::resume::check_said_once;
 use crate::args::{Rules, TrainArgs};
 use crate::failure::Failure;
-use crate::zoo;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use hasard_learn::config::constraint::{check_every_task, check_once_each};
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::numbers::check_number;
 use hasard_learn::config::readers::readers;
-use hasard_learn::config::{AlgorithmKind, Constraint, InitFrom, Preset, TrainConfig};
-use std::path::Path;
+use hasard_learn::config::{AlgorithmKind, Constraint, Preset, TrainConfig};
 
 /// The command with the rules that its preset belongs to, unless it names others: what made the
 /// paper's tables is both.
@@ -90,9 +89,6 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         let named = |error| Failure::bad(format!("--set '{set}': {error}"));
         config.set_frames(config.with(set).map_err(named)?.frames);
     }
-    if let Some(place) = &args.init_from {
-        config.init_from = Some(init_from(place)?);
-    }
     let mut config =
         config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     if let Some(text) = &args.curriculum {
@@ -105,10 +101,13 @@ pub fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     Ok(config)
 }
 
-/// The weights that a place has now.
-pub fn init_from(place: &Path) -> Result<InitFrom, Failure> {
-    // Damaged checkpoints are named when the run begins.
-    InitFrom::at(&zoo::find(place.as_os_str())?, &mut |_| ()).map_err(Failure::bad)
+/// The settings of a fresh run, for which a command must say nothing twice. What it begins with is
+/// left to the trainer.
+pub fn fresh(args: &TrainArgs, typed: &ArgMatches) -> Result<TrainConfig, Failure> {
+    let config = configuration(&with_rules(args, typed))?;
+    check_length(args, &config)?;
+    check_said_once(args, typed)?;
+    Ok(config)
 }
 
 /// A line for each `--set` of the algorithm's own settings that this algorithm does not read.

@@ -12,22 +12,48 @@ enum Written {
     Bytes(Vec<u8>),
 }
 
-/// Writes a place.
-pub fn serialize<S: Serializer>(place: &Option<PathBuf>, to: S) -> Result<S::Ok, S::Error> {
-    let written = place.as_deref().map(|place| match place.to_str() {
-        Some(text) => Written::Text(text.to_string()),
-        None => Written::Bytes(place.as_os_str().as_encoded_bytes().to_vec()),
-    });
-    written.serialize(to)
+impl From<&Path> for Written {
+    fn from(place: &Path) -> Written {
+        match place.to_str() {
+            Some(text) => Written::Text(text.to_string()),
+            None => Written::Bytes(place.as_os_str().as_encoded_bytes().to_vec()),
+        }
+    }
 }
 
-/// Reads a place.
+impl From<Written> for PathBuf {
+    fn from(written: Written) -> PathBuf {
+        match written {
+            Written::Text(text) => PathBuf::from(text),
+            Written::Bytes(bytes) => of_bytes(bytes),
+        }
+    }
+}
+
+/// Writes a place that there may be.
+pub fn serialize<S: Serializer>(place: &Option<PathBuf>, to: S) -> Result<S::Ok, S::Error> {
+    place.as_deref().map(Written::from).serialize(to)
+}
+
+/// Reads a place that there may be.
 pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<PathBuf>, D::Error> {
     let written = Option::<Written>::deserialize(from)?;
-    Ok(written.map(|written| match written {
-        Written::Text(text) => PathBuf::from(text),
-        Written::Bytes(bytes) => of_bytes(bytes),
-    }))
+    Ok(written.map(PathBuf::from))
+}
+
+/// A place that there is.
+pub mod known {
+    use super::{Deserialize, Deserializer, Path, PathBuf, Serialize, Serializer, Written};
+
+    /// Writes it.
+    pub fn serialize<S: Serializer>(place: &Path, to: S) -> Result<S::Ok, S::Error> {
+        Written::from(place).serialize(to)
+    }
+
+    /// Reads it.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<PathBuf, D::Error> {
+        Written::deserialize(from).map(PathBuf::from)
+    }
 }
 
 #[cfg(unix)]

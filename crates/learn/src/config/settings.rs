@@ -21,20 +21,21 @@ const OTHERS_HANG_ON: [(&str, &str); 12] = [
     ("env.rules", "--rules"),
     ("env.hard", "--hard"),
     ("env.frame_skip", "--frame-skip"),
-    ("init_from", "--init-from"),
+    ("init_from.sha256", "--init-from"),
     ("curriculum", "--curriculum"),
     ("changes", "--resume, which writes them down"),
 ];
 
 /// Settings, or groups of them, that a run may be resumed with another value of: what was learned
 /// so far stays of use.
-const MAY_CHANGE: [&str; 16] = [
+const MAY_CHANGE: [&str; 17] = [
     "frames",
     "seed",
     "device",
     // The same files at another place.
     "env.maps",
     "env.iwad",
+    "init_from.place",
     "learning.rate",
     "learning.final_rate",
     "learning.schedule_frames",
@@ -49,12 +50,13 @@ const MAY_CHANGE: [&str; 16] = [
 ];
 
 /// Those of them that change nothing that is learned.
-const CHANGE_NOTHING: [&str; 8] = [
+const CHANGE_NOTHING: [&str; 9] = [
     "learning.threads",
     "sampling.samplers",
     "sampling.world_threads",
     "sampling.groups",
     "evaluation",
+    "init_from.place",
     // Not its window: how costs scatter over it is what a margin takes off a budget.
     "reporting.report_seconds",
     "reporting.checkpoint_seconds",
@@ -186,14 +188,7 @@ impl TrainConfig {
     /// All such settings.
     #[must_use]
     pub fn all_unlike(&self, other: &TrainConfig) -> Vec<(String, Value, Value)> {
-        let elsewhere = [
-            "frames",
-            "device",
-            "env.maps",
-            "env.iwad",
-            "init_from.place",
-            "learning.schedule_frames",
-        ];
+        let elsewhere = ["frames", "device", "env.maps", "env.iwad", "learning.schedule_frames"];
         let machine =
             |name: &str| CHANGE_NOTHING.iter().chain(&elsewhere).any(|group| within(name, group));
         let mut found = Vec::new();

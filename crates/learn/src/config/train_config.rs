@@ -49,7 +49,7 @@ pub struct TrainConfig {
     pub seed: u64,
     /// Length of the run in frames (tics): steps times frame skip.
     pub frames: u64,
-    /// The agent or run whose weights the run began with, if any: its place as it was typed, and
+    /// The agent or run whose weights the run began with, if any: its place, and
     /// the SHA-256 of the agent's file or of the weights of the run's checkpoint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub init_from: Option<InitFrom>,

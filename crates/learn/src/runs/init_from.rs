@@ -38,9 +38,8 @@ pub fn read_again(
     warn: &mut dyn FnMut(String),
 ) -> Result<Beginning<'static>, LearnError> {
     let Some(known) = &config.init_from else { return Ok(Beginning::Nothing) };
-    let place = Path::new(&known.place);
-    let advice = "bring them back, or train anew with another --out";
-    let (beginning, found) = read(place, config, warn).map_err(|error| {
+    let advice = "bring them back, say with --init-from where they are now, or train anew with another --out";
+    let (beginning, found) = read(&known.place, config, warn).map_err(|error| {
         let problem = format!("it has no checkpoint yet, and the weights that it began with are gone ({error}); {advice}");
         LearnError::content(directory, problem)
     })?;
@@ -49,7 +48,7 @@ pub fn read_again(
     }
     let problem = format!(
         "it has no checkpoint yet, and {} has other weights now than it began with; {advice}",
-        known.place
+        known.place.display()
     );
     Err(LearnError::content(directory, problem))
 }
@@ -64,7 +63,7 @@ fn found(
         Some(run) => buttons::order(run, env),
         None => Ok(None),
     };
-    let init_from = |sha256| InitFrom { place: place.to_string_lossy().into_owned(), sha256 };
+    let init_from = |sha256| InitFrom { place: place.to_path_buf(), sha256 };
     if AgentFile::is_at(place) {
         let (bytes, file) = AgentFile::read_whole(place)?;
         let init_from = init_from(sha256(&bytes));

@@ -53,7 +53,10 @@ impl RunDirectory {
         directory.made.0 = made_folder;
         let checkpoints = path.join("checkpoints");
         let rests = fs::read_dir(&checkpoints).is_ok_and(|mut entries| entries.next().is_some())
-            || fs::metadata(path.join(METRICS)).is_ok_and(|data| data.is_file() && data.len() > 0)
+            || [METRICS, HEATMAPS].iter().any(|name| {
+                fs::metadata(path.join(name)).is_ok_and(|data| data.is_file() && data.len() > 0)
+            })
+            || !tensorboard::files(path).is_empty()
             || SELECTION.iter().any(|name| path.join(name).exists());
         let problem = if path.join("config.json").exists() {
             "there is a run already; go on with --resume, or choose another directory with --out"
@@ -80,7 +83,11 @@ impl RunDirectory {
     /// Opens the directory of a run to go on with it.
     pub fn open(path: &Path) -> Result<(RunDirectory, TrainConfig), LearnError> {
         let config = read_config(path)?;
-        Ok((RunDirectory::lock(path)?, config))
+        let directory = RunDirectory::lock(path)?;
+        // A run that was killed early, or whose files were copied without what is empty.
+        let checkpoints = path.join("checkpoints");
+        fs::create_dir_all(&checkpoints).map_err(LearnError::file(&checkpoints, "create"))?;
+        Ok((directory, config))
     }
 
     /// Takes a new run back that could not begin, so that the same command, mended, finds its
@@ -141,7 +148,8 @@ impl RunDirectory {
         }
         match held {
             Ok(()) => {
-                let (path, folder) = (path.to_path_buf(), identity(path));
+                let folder = fs::metadata(path).ok().as_ref().and_then(identity);
+                let path = path.to_path_buf();
                 Ok(RunDirectory { path, made: (false, made), folder, _lock: lock })
             }
             Err(TryLockError::WouldBlock) => Err(LearnError::content(
@@ -157,8 +165,16 @@ impl RunDirectory {
     /// Refuses to go on where the folder was moved or removed meanwhile: half of the run would be
     /// elsewhere.
     pub fn check_is_there(&self) -> Result<(), LearnError> {
-        if identity(&self.path) == self.folder {
-            return Ok(());
+        let gone = |error: &std::io::Error| {
+            matches!(error.kind(), std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory)
+        };
+        match fs::metadata(&self.path) {
+            Ok(data) if self.folder.is_none_or(|folder| identity(&data) == Some(folder)) => {
+                return Ok(());
+            }
+            // A disk that is busy for a moment says nothing of it; what is written next does.
+            Err(error) if !gone(&error) => return Ok(()),
+            _ => {}
         }
         Err(LearnError::content(
             &self.path,
@@ -355,16 +371,15 @@ fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), LearnErr
     write_whole(path, &text)
 }
 
-/// What stays the same of a folder when it is moved.
+/// What stays the same of a folder when it is moved, where the system says so.
 #[cfg(unix)]
-fn identity(path: &Path) -> Option<(u64, u64)> {
+fn identity(folder: &fs::Metadata) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
-    fs::metadata(path).ok().map(|data| (data.dev(), data.ino()))
+    Some((folder.dev(), folder.ino()))
 }
 
-/// What stays the same of a folder when it is moved: here nothing is known of it.
 #[cfg(not(unix))]
-fn identity(_: &Path) -> Option<(u64, u64)> {
+fn identity(_: &fs::Metadata) -> Option<(u64, u64)> {
     None
 }
 

@@ -104,7 +104,8 @@ pub fn train_together(
     };
     let outcome = catch_unwind(AssertUnwindSafe(whole))
         .unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))));
-    if outcome.is_err() && begun.fresh && begun.run.is_blank() {
+    let is_there = || begun.run.check_is_there().is_ok();
+    if outcome.is_err() && begun.fresh && is_there() && begun.run.is_blank() {
         begun.run.withdraw();
     }
     outcome
@@ -338,8 +339,8 @@ impl<'a> Trainer<'a> {
                     .into_iter()
                     .for_each(|line| writer.heatmap(line));
             }
-            writer.check()?;
             self.run.check_is_there()?;
+            writer.check()?;
             let due = last_checkpoint.elapsed().as_secs_f64()
                 >= self.session.config.reporting.checkpoint_seconds;
             let save = over || (due && writer.keeps_up());
@@ -384,6 +385,7 @@ impl<'a> Trainer<'a> {
     ) -> Result<Option<Evaluation>, LearnError> {
         let counts = self.counts();
         let examined = self.examiner.examine(&mut self.session, counts, stop)?;
+        self.run.check_is_there()?;
         let candidate = examined.as_ref().is_some_and(|(_, candidate)| *candidate);
         Word { over: false, save: candidate }.send(&self.session.team)?;
         if candidate {
@@ -407,6 +409,7 @@ impl<'a> Trainer<'a> {
         else {
             return Ok(None);
         };
+        self.run.check_is_there()?;
         let candidates = self.examiner.candidates.clone();
         let progress = Progress {
             candidates,

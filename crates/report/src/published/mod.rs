@@ -97,6 +97,7 @@ fn experiment(config: &Config) -> Option<(&'static [&'static str], String)> {
         "tasks",
         "changed",
         "early_creatures",
+        "init_from",
     ];
     if varied.iter().any(|key| option(key).is_some()) {
         return None;

@@ -155,7 +155,10 @@ impl Config {
             } else if key == "constraints" {
                 constraints = read_constraints(value, &mut flat)?;
             } else if key == "init_from" {
-                flat.extend(read_init_from(value).map(|short| (key.clone(), short)));
+                flat.extend(
+                    read_init_from(value, object.get("seed").unwrap_or(&Value::Null))
+                        .map(|short| (key.clone(), short)),
+                );
             } else if key == "curriculum"
                 && value.as_array().is_some_and(|lessons| lessons.iter().all(Value::is_object))
             {
@@ -370,8 +373,18 @@ fn rule_set(name: Option<&String>) -> RuleSet {
 }
 
 /// What a run began with: the end of its place, and enough of its checksum to tell it from others.
-fn read_init_from(value: &Value) -> Option<String> {
-    let (place, sha256) = (value["place"].as_str()?, value["sha256"].as_str()?);
+/// Seeds that each began with a run of their own seed are one experiment.
+fn read_init_from(value: &Value, seed: &Value) -> Option<String> {
+    let (place, sha256) = (value["place"].as_str().unwrap_or("?"), value["sha256"].as_str()?);
+    let own = format!("seed{seed}");
+    let is_of_its_seed = || {
+        place
+            .match_indices(&own)
+            .any(|(at, _)| !place[at + own.len()..].starts_with(|next: char| next.is_ascii_digit()))
+    };
+    if is_of_its_seed() {
+        return Some(place.replace(&own, "seed*"));
+    }
     let name = place.trim_end_matches('/').rsplit('/').next().unwrap_or(place);
     Some(format!("{name} {}", sha256.get(..8).unwrap_or(sha256)))
 }

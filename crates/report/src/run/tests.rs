@@ -66,6 +66,23 @@ fn what_makes_an_experiment_is_everything_but_machine_and_seed() {
     );
 }
 
+/// Runs from an agent were averaged with runs from nothing.
+#[test]
+fn what_a_run_began_with_makes_an_experiment() {
+    let began = |place: &str| {
+        let text = format!(
+            "{{\"env\":\"RemedyRushLevel2-v0\",\"algo\":\"PPOLag\",\"seed\":3,\
+             \"init_from\":{{\"place\":\"{place}\",\"sha256\":\"0123456789abcdef\"}}}}"
+        );
+        Config::parse(&text).unwrap().options["init_from"].clone()
+    };
+    assert_eq!(began("zoo:RemedyRushLevel1"), "zoo:RemedyRushLevel1 01234567");
+    assert_eq!(began("runs/base/"), "base 01234567");
+    // Each seed goes on from its own.
+    assert_eq!(began("runs/base/seed3"), "runs/base/seed*");
+    assert_eq!(began("runs/base/seed30"), "seed30 01234567");
+}
+
 #[test]
 fn the_lessons_of_a_curriculum_are_listed_by_their_levels() {
     let parse = |lessons: &str| {

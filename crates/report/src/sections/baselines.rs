@@ -72,9 +72,12 @@ impl<'a> Baselines<'a> {
             (config.scenario.clone(), config.level, options)
         };
         let own = task(group.config());
-        // What was trained on other levels or tasks too says nothing of what PPO reaches in this one.
+        // What was trained on other levels or tasks too, or began with an agent, says nothing of what
+        // PPO reaches in this one.
         let alone = |config: &Config| {
-            !["curriculum", "tasks"].iter().any(|key| config.options.contains_key(*key))
+            !["curriculum", "tasks", "init_from"]
+                .iter()
+                .any(|key| config.options.contains_key(*key))
         };
         let same = self.groups.iter().filter(|one| {
             let config = one.config();

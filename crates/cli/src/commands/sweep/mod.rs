@@ -111,7 +111,9 @@ fn has_room(job: &Job) -> Result<(), Failure> {
 /// Refuses a run that lies where the sweep would train one by other settings; gives the frames of
 /// one that was made for more than the sweep asks for.
 fn fits<'a>(job: &'a Job, config: &TrainConfig) -> Result<Option<(&'a Job, u64)>, Failure> {
-    let Ok(found) = read_config(&job.directory) else { return Ok(None) };
+    let Ok(mut found) = read_config(&job.directory) else { return Ok(None) };
+    // Runs of older versions do not say what they began with; the name of their folder does.
+    found.init_from = found.init_from.or(config.init_from.clone());
     match found.unlike(&config.clone().begun()) {
         None => Ok((found.frames > config.frames).then_some((job, found.frames))),
         Some((name, was, wanted)) => Err(Failure::bad(format!(

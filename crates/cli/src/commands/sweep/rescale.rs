@@ -2,8 +2,8 @@
 
 use super::plan::two_digits;
 use crate::args::{Cli, Command};
-use crate::commands::resume::check_said_once;
-use crate::commands::train_settings::{check_length, configuration, with_rules};
+use crate::commands::init_from::of_job;
+use crate::commands::train_settings::fresh;
 use crate::failure::Failure;
 use clap::{CommandFactory, FromArgMatches};
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
@@ -17,10 +17,8 @@ pub fn settings(job: &Job) -> Result<TrainConfig, Failure> {
     let typed = Cli::command().try_get_matches_from(line).map_err(wrong)?;
     match (Cli::from_arg_matches(&typed).map_err(wrong)?.command, typed.subcommand()) {
         (Command::Train(args), Some((_, typed))) => {
-            let args = with_rules(&args, typed);
-            let begun = configuration(&args).and_then(|config| {
-                check_length(&args, &config)?;
-                check_said_once(&args, typed)?;
+            let begun = fresh(&args, typed).and_then(|mut config| {
+                config.init_from = of_job(&args, &job.directory)?;
                 Ok(config)
             });
             begun.map_err(|error| error.about(&job.command_line("hasard")))

@@ -4,6 +4,7 @@
 use hasard_learn::config::TrainConfig;
 use hasard_learn::runs::run_directory::read_config;
 use hasard_sweep::Job;
+use std::path::PathBuf;
 
 /// The jobs without those that repeat an earlier one. A job that has nothing yet takes the
 /// directory of an equal run of the same folder.
@@ -33,7 +34,7 @@ fn what_is_learned(config: &TrainConfig) -> TrainConfig {
     let mut config = config.clone().begun();
     config.version.clear();
     if let Some(init_from) = &mut config.init_from {
-        init_from.place.clear();
+        init_from.place = PathBuf::new();
     }
     (config.learning.threads, config.sampling.samplers, config.sampling.world_threads) = (0, 0, 0);
     config

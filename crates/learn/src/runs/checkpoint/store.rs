@@ -202,6 +202,7 @@ mod tests {
     fn newer_checkpoints_take_no_room_from_what_is_written() {
         let run = std::env::temp_dir().join(format!("hasard-store-{}", std::process::id()));
         let store = Store::new(&run, 1);
+        fs::create_dir_all(run.join("checkpoints")).unwrap();
         let frames = || {
             let names = store.all();
             let name = |path: &PathBuf| path.file_name().unwrap().to_str().unwrap().to_owned();

@@ -97,7 +97,8 @@ impl Checkpoint {
         if temporary.exists() {
             fs::remove_dir_all(&temporary).map_err(LearnError::file(&temporary, "remove"))?;
         }
-        fs::create_dir_all(&temporary).map_err(LearnError::file(&temporary, "create"))?;
+        // The folder alone: its parent is the run's, and is not made again where that was moved.
+        fs::create_dir(&temporary).map_err(LearnError::file(&temporary, "create"))?;
         let state = StateFile {
             format: FORMAT,
             program: env!("CARGO_PKG_VERSION").into(),
