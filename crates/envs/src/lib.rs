@@ -61,7 +61,7 @@ pub use interface::environment::Environment;
 pub use interface::happening::{DAMAGE_CAUSES, Happening, HappeningKind};
 pub use interface::insight::{self, Insight};
 pub use interface::step::{CostTerm, Step};
-pub use options::{EnvOptions, Layout, ObservationKind};
+pub use options::{EnvOptions, FRAME_SKIP, Layout, ObservationKind};
 pub use policies::policy::{Policy, PolicyRun};
 pub use policies::rollout::rollout;
 pub use registry::scenario::{EnvId, edit_distance};

@@ -86,6 +86,9 @@ pub struct EnvOptions {
     pub assets: Option<std::sync::Arc<hasard_engine::assets::Assets>>,
 }
 
+/// Tics that each action is held where nothing else is said.
+pub const FRAME_SKIP: u32 = 4;
+
 impl Default for EnvOptions {
     fn default() -> EnvOptions {
         EnvOptions {
@@ -97,7 +100,7 @@ impl Default for EnvOptions {
             full_actions: false,
             actions_of: None,
             together: None,
-            frame_skip: 4,
+            frame_skip: FRAME_SKIP,
             max_episode_steps: None,
             size: FrameSize::CLASSIC,
             observation: ObservationKind::Rgb,

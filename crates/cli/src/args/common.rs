@@ -2,10 +2,8 @@
 
 use crate::settings::Elsewhere;
 use clap::{Args, ValueEnum};
+use hasard_envs::FRAME_SKIP;
 use std::path::PathBuf;
-
-/// Tics that each action is held where nothing is said.
-pub const FRAME_SKIP: u32 = 4;
 
 /// `--seed` of a command that draws nothing by chance: scripts give it to all alike.
 #[derive(Args, Debug, Clone, Default)]

@@ -8,7 +8,7 @@ mod training;
 mod worlds;
 
 pub use cli::{Cli, Command, CompletionsArgs};
-pub use common::{EnvArgs, FRAME_SKIP, LooksArgs, Observation, ObservationArgs, Rules, Size};
+pub use common::{EnvArgs, LooksArgs, Observation, ObservationArgs, Rules, Size};
 pub use pictures::{
     ContactSheetArgs, FilmArgs, HighlightsArgs, PlayArgs, RecordArgs, RenderArgs, ReplayArgs, View,
 };

@@ -1,11 +1,11 @@
 //! `hasard trace`: recorded inputs, tic by tic.
 
-use crate::args::{FRAME_SKIP, Size, TraceArgs};
+use crate::args::{Size, TraceArgs};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::Command;
-use hasard_envs::{Env, parse_command};
+use hasard_envs::{Env, FRAME_SKIP, parse_command};
 use serde_json::json;
 use std::io::{BufWriter, Write};
 use std::path::Path;

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use hasard_envs::{
-    ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, Mixture,
-    ObservationKind, RuleSet, Scenario, VecEnv, VecOptions, scenarios::episode_steps,
+    ActionSpace, CostTerm, Env, EnvError, EnvId, EnvOptions, FRAME_SKIP, FrameSize, Layout,
+    Mixture, ObservationKind, RuleSet, Scenario, VecEnv, VecOptions, scenarios::episode_steps,
 };
 use serde::{Deserialize, Serialize};
 
@@ -81,7 +81,7 @@ impl EnvConfig {
             early_creatures: false,
             hard: false,
             full_actions: false,
-            frame_skip: 4,
+            frame_skip: FRAME_SKIP,
             size: (128, 72),
             observation: "rgb".into(),
             frame_stack: 1,

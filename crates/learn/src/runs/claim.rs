@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use hasard_envs::{Env, EnvOptions, Episode, RuleSet, VecEnv};
+use hasard_envs::{Env, EnvOptions, Episode, FRAME_SKIP, RuleSet, VecEnv};
 use hasard_media::files::{NO_FILE, is_special};
 use serde::{Deserialize, Serialize};
 
@@ -146,7 +146,7 @@ fn unusual(env: &EnvConfig) -> Option<&'static str> {
             "was trained in maps or pictures that are not part of the program; a claim is about those that are",
         );
     }
-    let other = env.frame_skip != 4 || env.early_creatures;
+    let other = env.frame_skip != FRAME_SKIP || env.early_creatures;
     other.then_some("plays another task than its id names: a claim's has a frame_skip of 4, and no early_creatures")
 }
 

@@ -393,7 +393,7 @@ fn remove_if_there(path: &Path) -> Result<(), LearnError> {
 }
 
 /// Writes a file under another name and renames it when it is complete.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
     let temporary = path.with_extension("partial");
     let write = || {
         let mut file = File::create(&temporary)?;

@@ -79,8 +79,8 @@ const SPELLINGS: &[(&str, &[&str])] = &[
     ("published_colours", &["env.published_colours"]),
 ];
 
-/// Tics that an action is held where nothing is said of it.
-pub const FRAME_SKIP: u64 = 4;
+/// The environments' own, as files of results have it: the type of a number in JSON.
+pub const FRAME_SKIP: u64 = hasard_envs::FRAME_SKIP as u64;
 
 /// What was trained and how. Everything but the seed is the experiment's identity: runs are
 /// averaged only if all of it is equal, known key or not.
@@ -266,11 +266,12 @@ impl Config {
             options.remove("cost_scale");
         }
         // What is left at its usual value need not be shown, and older runs may lack the key.
+        let frame_skip = FRAME_SKIP.to_string();
         for (key, usual) in [
             ("hard", "false"),
             ("full_actions", "false"),
             ("observation", "rgb"),
-            ("frame_skip", "4"),
+            ("frame_skip", frame_skip.as_str()),
             ("frame_stack", "1"),
             ("early_creatures", "false"),
             ("published_depth", "false"),

@@ -3,8 +3,8 @@
 use crate::error::LearnError;
 use crate::runs::checkpoint::progress::{Progress, STATE, StateFile, read_progress};
 use crate::runs::checkpoint::read::Loaded;
-use crate::runs::checkpoint::write::{Checkpoint, write_through};
-use crate::runs::run_directory::read_selection;
+use crate::runs::checkpoint::write::Checkpoint;
+use crate::runs::run_directory::{read_selection, write_whole};
 use crate::runs::selection::Candidates;
 use std::fs;
 use std::io::ErrorKind;
@@ -98,14 +98,7 @@ impl Store {
     pub fn amend(&self, progress: &Progress) -> Result<(), LearnError> {
         let path = self.directory.join(format!("frames_{:012}", progress.frames)).join(STATE);
         let state = StateFile { progress: progress.clone(), ..StateFile::read(&path)? };
-        let temporary = path.with_extension("partial");
-        let text = state.text()?;
-        let written = write_through(&temporary, &text)
-            .and_then(|()| fs::rename(&temporary, &path).map_err(LearnError::file(&path, "write")));
-        if written.is_err() {
-            let _ = fs::remove_file(&temporary);
-        }
-        written
+        write_whole(&path, &state.text()?)
     }
 
     /// Where the candidate of so many frames is.

@@ -129,7 +129,7 @@ impl Checkpoint {
 }
 
 /// Writes a file and waits until it is on the disk.
-pub(super) fn write_through(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
+fn write_through(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
     let write = || {
         let mut file = File::create(path)?;
         file.write_all(bytes)?;
