@@ -33,7 +33,7 @@ use hasard_envs::{EnvId, EnvOptions, VecEnv};
 use hasard_learn::config::{Constraint, EnvConfig};
 use hasard_learn::runs::agent::{Choice, TrainedPolicy};
 use hasard_learn::runs::evaluate::{Evaluation, play};
-use hasard_learn::runs::run_directory::episode_row;
+use hasard_learn::runs::episode_row::episode_row;
 use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Summary};
 use hasard_learn::team::Team;

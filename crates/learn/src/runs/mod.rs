@@ -8,6 +8,7 @@ pub mod calibration;
 pub mod checkpoint;
 pub mod checksum;
 pub mod claim;
+pub mod episode_row;
 pub mod evaluate;
 pub mod evaluation;
 pub mod examiner;

@@ -5,7 +5,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use hasard_envs::Episode;
 use hasard_media::files::{NO_FILE, is_special};
 use hasard_media::shell::quote;
 use serde_json::{Value, json};
@@ -13,6 +12,7 @@ use serde_json::{Value, json};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::runs::calibration::{calibrate, predictions};
+use crate::runs::episode_row::episode_row;
 use crate::runs::evaluation::Closing;
 use crate::runs::selection::Selection;
 use crate::runs::tensorboard;
@@ -282,31 +282,6 @@ impl RunDirectory {
         }
         write_whole(&path, kept.as_bytes())
     }
-}
-
-/// An episode of an environment, or of one of its several tasks, as files of episodes and `hasard
-/// eval --json` have it.
-#[must_use]
-pub fn episode_row(env: &str, number: u64, episode: &Episode) -> Value {
-    let named = |values: &mut dyn Iterator<Item = (&'static str, f64)>| -> Value {
-        values
-            .map(|(name, value)| (name.to_string(), json!(value)))
-            .collect::<serde_json::Map<_, _>>()
-            .into()
-    };
-    json!({
-        "env": episode.task.unwrap_or(env),
-        "episode": number,
-        "seed": episode.seed,
-        "return": episode.episode_return,
-        "cost": episode.cost,
-        "costs": named(&mut episode.costs.iter().map(|one| (one.name, one.cost))),
-        "uncounted": episode.costs.iter().filter(|one| !one.counted).map(|one| one.name).collect::<Vec<_>>(),
-        "length": episode.length,
-        "terminated": episode.terminated,
-        "truncated": episode.truncated,
-        "stats": named(&mut episode.stats.iter().copied()),
-    })
 }
 
 /// Reads a file of a run. A pipe would be waited for without end, and a device may have none.
