@@ -49,6 +49,15 @@ class SafetyEnv(gymnasium.Env[np.ndarray, Any]):
         cost = float(info.pop("cost"))
         return observation, float(reward), cost, terminated, truncated, info
 
+    def save(self) -> bytes:
+        """Returns where the environment is, to come back to by `load`. Raises AttributeError for one that is not of this package."""
+        return bytes(self.env.get_wrapper_attr("save")())
+
+    def load(self, state: bytes) -> np.ndarray:
+        """Comes back to `state`, which `save` gave. Returns the observation of that moment; raises what `Env.load` does."""
+        observation: np.ndarray = self.env.get_wrapper_attr("load")(state)
+        return observation
+
     def render(self) -> Any:
         """Returns what `Env.render` does."""
         return self.env.render()
@@ -93,6 +102,14 @@ class SafetyVectorEnv:
         if "final_obs" in infos:
             infos["final_observation"], infos["_final_observation"] = infos.pop("final_obs"), infos.pop("_final_obs")
         return observations, rewards, costs, terminated, truncated, infos
+
+    def save(self) -> bytes:
+        """Returns where every lane is, to come back to by `load`; raises what `VectorEnv.save` does."""
+        return self.envs.save()
+
+    def load(self, state: bytes) -> np.ndarray:
+        """Comes back to `state`, which `save` gave. Returns observations uint8 [n, ...] of that moment; raises what `VectorEnv.load` does."""
+        return self.envs.load(state)
 
     def close(self) -> None:
         """Lets the worlds go."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import gymnasium
@@ -11,6 +12,7 @@ from conftest import SMALL, assert_same
 
 import hasard_rs
 from hasard_rs import published
+from hasard_rs.safety import SafetyEnv, SafetyVectorEnv
 from hasard_rs.wrappers import CostPenalty, CostWrapper, Saute
 
 ENV = "hasard/VolcanicVentureLevel1-v0"
@@ -85,3 +87,18 @@ def test_the_published_names_come_back_too() -> None:
     for again in (env, other):
         again.load(state)
         assert (again.unwrapped.get_statistics(), again.unwrapped.calculate_cost(), cost_of(again)) == known
+
+
+@pytest.mark.parametrize("lanes", [0, 3])
+def test_six_tuples_come_back_too(lanes: int) -> None:
+    env: Any = SafetyVectorEnv(ENV, lanes, **SMALL) if lanes else SafetyEnv(ENV, **SMALL)
+    env.action_space.seed(3)
+    env.reset(seed=4)
+    for _ in range(20):
+        observation = env.step(env.action_space.sample())[0]
+    observation, state = observation.copy(), env.save()
+    actions = [env.action_space.sample() for _ in range(10)]
+    results = [copy.deepcopy(env.step(action)) for action in actions]
+    env.reset(seed=5)
+    assert np.array_equal(env.load(state), observation)
+    assert_same([copy.deepcopy(env.step(action)) for action in actions], results)
