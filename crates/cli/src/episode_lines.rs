@@ -3,8 +3,8 @@
 use crate::failure::{Failure, Outcome};
 use hasard_envs::{EnvOptions, Episode, RuleSet};
 use hasard_learn::config::Constraint;
-use hasard_learn::runs::evaluate::{Evaluation, Judgement, TaskEvaluation};
 use hasard_learn::runs::episode_row::episode_row;
+use hasard_learn::runs::evaluate::{Evaluation, Judgement, TaskEvaluation};
 use hasard_learn::statistics::{Estimate, Tails};
 use hasard_report::document::count;
 use serde_json::{Map, Value, json};
