@@ -50,7 +50,7 @@ class SafetyEnv(gymnasium.Env[np.ndarray, Any]):
         return observation, float(reward), cost, terminated, truncated, info
 
     def save(self) -> bytes:
-        """Returns where the environment is, to come back to by `load`. Raises AttributeError for one that is not of this package."""
+        """Returns where the environment is, to come back to by `load`. Raises AttributeError for one of another package."""
         return bytes(self.env.get_wrapper_attr("save")())
 
     def load(self, state: bytes) -> np.ndarray:
@@ -108,7 +108,7 @@ class SafetyVectorEnv:
         return self.envs.save()
 
     def load(self, state: bytes) -> np.ndarray:
-        """Comes back to `state`, which `save` gave. Returns observations uint8 [n, ...] of that moment; raises what `VectorEnv.load` does."""
+        """Comes back to `state`, which `save` gave. Returns observations uint8 [n, ...] of then; raises what `VectorEnv.load` does."""
         return self.envs.load(state)
 
     def close(self) -> None:

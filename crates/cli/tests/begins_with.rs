@@ -25,23 +25,25 @@ fn an_agent_keeps_its_buttons_under_rules_that_list_them_otherwise() {
     assert_eq!(played(&folder, "from_run --latest"), agent);
 }
 
+/// A sweep of one run that begins with the weights of a place; `more` are further settings.
+fn sweep(frames: u32, init_from: &str, more: &str) -> String {
+    format!(
+        "out = \"runs\"\nframes = {frames}\nscenarios = [\"RemedyRush\"]\nlevels = [1]\nalgorithms = [\"PPO\"]\nseeds = [1]\n\
+         [options]\ninit-from = \"{init_from}\"\nthreads = 1\nenvs = 2\neval-every = 0\n[settings]\nsampling.rollout = 8\n{more}"
+    )
+}
+
 /// A sweep took runs from an agent for those from nothing, and could not go on with one.
 #[test]
 fn a_sweep_knows_what_its_runs_began_with() {
     let folder = Folder::new("begins_with_sweep");
-    let options = |frames: u32, init_from: &str| {
-        format!(
-            "out = \"runs\"\nframes = {frames}\nscenarios = [\"RemedyRush\"]\nlevels = [1]\nalgorithms = [\"PPO\"]\n\
-             seeds = [1]\n[options]\n{init_from}\nthreads = 1\nenvs = 4\neval-every = 0\n[settings]\nsampling.rollout = 8\n"
-        )
-    };
-    let zoo = "init-from = \"zoo:RemedyRushLevel1\"";
-    folder.file("s.toml", options(256, zoo).as_bytes());
+    let sweep = |frames: u32| sweep(frames, "zoo:RemedyRushLevel1", "");
+    folder.file("s.toml", sweep(256).as_bytes());
     let line = "sweep s.toml --json";
     assert!(folder.ok(line).contains("\"finished\":1"));
     assert!(folder.ok(line).contains("\"skipped\":1"));
     // What still lacks frames goes on, with the command that began it.
-    folder.file("s.toml", options(512, zoo).as_bytes());
+    folder.file("s.toml", sweep(512).as_bytes());
     assert!(folder.ok(line).contains("\"finished\":1"));
     // Its own beginning may be said again, another is refused.
     let path = "runs/RemedyRushLevel1-v0/PPO";
@@ -62,13 +64,8 @@ fn a_sweep_needs_no_weights_that_its_runs_have_had() {
     let small = "--algo PPO --envs 2 --threads 1 --set sampling.rollout=8 --set network.dense=[32] --set network.recurrent=32 \
                  --eval-every 0 --quiet";
     folder.ok(&format!("train RemedyRushLevel1 {small} --frames 64 --out base"));
-    let sweep = |frames: u32| {
-        format!(
-            "out = \"runs\"\nframes = {frames}\nscenarios = [\"RemedyRush\"]\nlevels = [1]\nalgorithms = [\"PPO\"]\n\
-             seeds = [1]\n[options]\ninit-from = \"base\"\nthreads = 1\nenvs = 2\neval-every = 0\n[settings]\n\
-             sampling.rollout = 8\nnetwork.dense = [32]\nnetwork.recurrent = 32\n"
-        )
-    };
+    let layers = "network.dense = [32]\nnetwork.recurrent = 32\n";
+    let sweep = |frames: u32| sweep(frames, "base", layers);
     folder.file("s.toml", sweep(64).as_bytes());
     assert!(folder.ok("sweep s.toml --json").contains("\"finished\":1"));
     folder.ok("train RemedyRushLevel1 --resume --frames 128 --quiet --out base");

@@ -131,9 +131,8 @@ fn a_run_stopped_in_any_evaluation_equals_the_uninterrupted_one() {
     fs::remove_dir_all(straight).unwrap();
 }
 
-/// Trains until it is refused, with `moved` called with every report and before every evaluation;
-/// the words of the refusal.
-fn refused_once_moved(path: &Path, moved: &(dyn Fn(bool) + Sync)) -> String {
+/// Trains until it is refused, with `moved` called with every report and before every evaluation.
+fn refused_once_moved(path: &Path, moved: &(dyn Fn(bool) + Sync)) {
     let stop = AtomicBool::new(false);
     let mut hooks = Hooks { stop: &stop, report: &mut |_| moved(false), warn: &mut |_| {} };
     let worlds = |_: &EnvConfig, options: VecOptions| {
@@ -147,7 +146,6 @@ fn refused_once_moved(path: &Path, moved: &(dyn Fn(bool) + Sync)) -> String {
         .unwrap_err()
         .to_string();
     assert!(message.contains("was moved or removed") && message.contains("--resume"), "{message}");
-    message
 }
 
 /// A run whose folder was moved made another in its place, ended well and was torn in two.

@@ -370,14 +370,15 @@ fn remove_if_there(path: &Path) -> Result<(), LearnError> {
 /// Writes a file under another name and renames it when it is complete.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
     let temporary = path.with_extension("partial");
-    let write = || {
-        let mut file = File::create(&temporary)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&temporary, path)
-    };
-    write().map_err(|error| {
+    write_through(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|error| {
         let _ = fs::remove_file(&temporary);
         LearnError::file(path, "write")(error)
     })
+}
+
+/// Writes a file and waits until it is on the disk.
+pub(crate) fn write_through(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
 }

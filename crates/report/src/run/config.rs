@@ -378,12 +378,10 @@ fn rule_set(name: Option<&String>) -> RuleSet {
 fn read_init_from(value: &Value, seed: &Value) -> Option<String> {
     let (place, sha256) = (value["place"].as_str().unwrap_or("?"), value["sha256"].as_str()?);
     let own = format!("seed{seed}");
-    let is_of_its_seed = || {
-        place
-            .match_indices(&own)
-            .any(|(at, _)| !place[at + own.len()..].starts_with(|next: char| next.is_ascii_digit()))
-    };
-    if is_of_its_seed() {
+    let is_of_its_seed = place
+        .match_indices(&own)
+        .any(|(at, _)| !place[at + own.len()..].starts_with(|next: char| next.is_ascii_digit()));
+    if is_of_its_seed {
         return Some(place.replace(&own, "seed*"));
     }
     let name = place.trim_end_matches('/').rsplit('/').next().unwrap_or(place);

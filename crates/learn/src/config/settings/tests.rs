@@ -113,7 +113,8 @@ fn changes_of_a_resumed_run_are_written_down() {
     let message = config.resumed_with(&all(&["learning.gamma=0.9"]), 0).unwrap_err().to_string();
     assert!(message.contains("learning.gamma") && message.contains("--init-from"), "{message}");
 }
-/// A13: rates and the multiplier's speed hang on frames. Gone on with for twice as long, a run
+
+/// Rates and the multiplier's speed hang on frames. Gone on with for twice as long, a run
 /// neither jumps back in its schedule nor stretches it, and says that it was extended.
 #[test]
 fn an_extended_run_keeps_its_schedule() {

@@ -6,11 +6,11 @@ use crate::networks::ModelShape;
 use crate::runs::checkpoint::blocks::{Block, doubles, floats, serialise, words};
 use crate::runs::checkpoint::progress::{FORMAT, Progress, STATE, StateFile, TRAINING, WEIGHTS};
 use crate::runs::checksum::crc32c;
+use crate::runs::run_directory::write_through;
 use crate::sampling::sampler::SamplerState;
 use safetensors::tensor::Dtype;
 use std::fs;
 use std::fs::File;
-use std::io::Write;
 use std::path::Path;
 
 /// A checkpoint in memory, ready to be written.
@@ -109,7 +109,10 @@ impl Checkpoint {
         .text()?;
         let written = [(WEIGHTS, &self.weights), (TRAINING, &self.training), (STATE, &state)]
             .into_iter()
-            .try_for_each(|(name, bytes)| write_through(&temporary.join(name), bytes));
+            .try_for_each(|(name, bytes)| {
+                let path = temporary.join(name);
+                write_through(&path, bytes).map_err(LearnError::file(&path, "write"))
+            });
         if let Err(error) = written {
             // Half a checkpoint on a full disk helps nobody.
             let _ = fs::remove_dir_all(&temporary);
@@ -126,14 +129,4 @@ impl Checkpoint {
         }
         Ok(())
     }
-}
-
-/// Writes a file and waits until it is on the disk.
-fn write_through(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
-    let write = || {
-        let mut file = File::create(path)?;
-        file.write_all(bytes)?;
-        file.sync_all()
-    };
-    write().map_err(LearnError::file(path, "write"))
 }
