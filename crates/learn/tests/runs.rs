@@ -75,6 +75,8 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
         }
         if matches!(algorithm, AlgorithmKind::PpoPid | AlgorithmKind::Cup) {
             config.learning.budget_annealing = Some(0.6);
+            config.learning.final_gamma = Some(0.9);
+            config.learning.final_gae_lambda = Some(0.5);
         }
         if algorithm == AlgorithmKind::TrpoPid {
             // The TRPO family as released.

@@ -79,8 +79,10 @@ pub fn run(args: &EvalArgs) -> Outcome {
     let env =
         Env::new(&crate::settings::first_task(&config.env), &options).map_err(Failure::bad)?;
     let mut traces = Vec::new();
+    let mut gamma = 1.0;
     if args.calibration.is_some() {
         let policy = player.policy(&env)?;
+        gamma = policy.cost_gamma();
         if policy.cost_units().is_empty() {
             return Err(Failure::bad(format!(
                 "--calibration: {}: has no critics of costs whose units are known and that see no more than an agent at work; give \
@@ -99,7 +101,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
     let mut more = Vec::new();
     if let Some(path) = &args.calibration {
         let played: Vec<(Episode, Trace)> = lines.episodes().iter().cloned().zip(traces).collect();
-        more.push(("calibration", write_calibration(path, &played, &config)?));
+        more.push(("calibration", write_calibration(path, &played, &config, gamma)?));
     }
     if let Some((count, out)) = film {
         let worst = worst_of(lines.episodes(), config.constraints.first(), count)?;
@@ -204,8 +206,9 @@ fn write_calibration(
     path: &Path,
     played: &[(Episode, Trace)],
     config: &TrainConfig,
+    gamma: f64,
 ) -> Result<Value, Failure> {
-    let all = predictions(played, config);
+    let all = predictions(played, config, gamma);
     let mut text = String::from("episode,seed,step,term,predicted,observed,cut\n");
     for one in &all {
         let term = config.constraints[one.constraint].term.as_deref().unwrap_or("cost");
@@ -217,7 +220,7 @@ fn write_calibration(
         );
     }
     write_whole(path, text.as_bytes()).map_err(Failure::bad)?;
-    Ok(json!(calibrate(&all, config)))
+    Ok(json!(calibrate(&all, config, gamma)))
 }
 
 fn print_calibration(all: &Value) -> Outcome {

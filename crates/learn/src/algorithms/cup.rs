@@ -65,6 +65,9 @@ impl Algorithm for Cup {
         signals: &Signals<'_>,
         means: &mut Means,
     ) -> Result<(), LearnError> {
+        // They have a schedule.
+        let now = &learner.config.learning;
+        (self.settings.gamma, self.settings.gae_lambda) = (now.gamma, now.gae_lambda);
         learn_in_epochs(self, learner, rollout, epochs, signals, means)?;
         if self.multipliers().iter().all(|&multiplier| multiplier == 0.0) {
             return Ok(());

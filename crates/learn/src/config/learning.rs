@@ -94,8 +94,16 @@ pub struct LearningConfig {
     pub recurrence: Option<usize>,
     /// Discount.
     pub gamma: f64,
+    /// Discount at the end of the schedule, reached linearly (François-Lavet et al. 2015, arXiv
+    /// 1512.02011, raise it while an agent learns); `null` for a constant one. Costs follow unless
+    /// they have a discount of their own.
+    #[serde(default)]
+    pub final_gamma: Option<f64>,
     /// Lambda of the advantage estimate.
     pub gae_lambda: f64,
+    /// Lambda at the end of the schedule, reached linearly; `null` for a constant one.
+    #[serde(default)]
+    pub final_gae_lambda: Option<f64>,
     /// Least deviation that advantages are divided by, in units of reward: those that deviate less
     /// are made smaller than 1, so that while nothing is earned a policy does not follow the noise
     /// of its critics; 0 for none.
@@ -228,5 +236,17 @@ impl LearningConfig {
     #[must_use]
     pub fn rate_after(&self, share: f64) -> f64 {
         self.rate + (self.final_rate.unwrap_or(self.rate) - self.rate) * share.min(1.0)
+    }
+
+    /// Discount and lambda after a share of the schedule, from 0 to 1.
+    #[must_use]
+    pub fn horizon_after(&self, share: f64) -> (f64, f64) {
+        let between = |first: f64, last: Option<f64>| {
+            first + (last.unwrap_or(first) - first) * share.min(1.0)
+        };
+        (
+            between(self.gamma, self.final_gamma),
+            between(self.gae_lambda, self.final_gae_lambda),
+        )
     }
 }

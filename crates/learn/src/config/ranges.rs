@@ -48,7 +48,9 @@ impl TrainConfig {
         let (proportional, integral, derivative) = settings.pid_gains;
         for (name, given, low, high) in [
             ("gamma", learning.gamma, 0.0, 1.0),
+            ("the final gamma", learning.final_gamma.unwrap_or(0.0), 0.0, 1.0),
             ("lambda of the advantages", learning.gae_lambda, 0.0, 1.0),
+            ("the final lambda", learning.final_gae_lambda.unwrap_or(0.0), 0.0, 1.0),
             ("learning.advantage_floor", learning.advantage_floor, 0.0, f64::MAX),
             ("the learning rate", learning.rate, 0.0, 10.0),
             ("the final learning rate", learning.final_rate.unwrap_or(0.0), 0.0, 10.0),

@@ -156,7 +156,10 @@ impl TrainConfig {
             );
         }
         if self.algorithm == AlgorithmKind::Cup
-            && learning.cost_gamma.unwrap_or(learning.gamma) >= 1.0
+            && learning
+                .cost_gamma
+                .unwrap_or(learning.gamma.max(learning.final_gamma.unwrap_or(0.0)))
+                >= 1.0
         {
             let allowed = "below 1 for CUP, whose projection has 1 / (1 - gamma) for a horizon";
             return refuse("the discount of costs", &1, allowed);
@@ -296,6 +299,13 @@ impl TrainConfig {
     #[must_use]
     pub fn progress(&self, frames: u64) -> f64 {
         (frames as f64 / self.learning.schedule_frames.unwrap_or(self.frames) as f64).min(1.0)
+    }
+
+    /// Discount of the costs that critics predict after so many frames.
+    #[must_use]
+    pub fn cost_gamma_after(&self, frames: u64) -> f64 {
+        let (gamma, _) = self.learning.horizon_after(self.progress(frames));
+        self.learning.cost_gamma.unwrap_or(gamma)
     }
 
     /// Writes down what a run that begins goes by from then on: how long its schedules are, and what

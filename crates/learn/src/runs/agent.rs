@@ -55,6 +55,8 @@ pub struct TrainedPolicy {
     watched: Option<usize>,
     /// The units of the critics' values; none where they are not known.
     returns: Vec<Moments>,
+    /// Discount of the costs that its critics predict.
+    cost_gamma: f64,
 }
 
 /// A trained agent for some worlds side by side, each with an episode of its own.
@@ -136,6 +138,7 @@ impl TrainedPolicy {
             device,
             watched,
             returns: Vec::new(),
+            cost_gamma: config.cost_gamma_after(config.frames),
         })
     }
 
@@ -192,6 +195,8 @@ impl TrainedPolicy {
             |learner| loaded.restore_weights(learner),
         )?;
         let critics = 1 + policy.shape.cost_critics;
+        let cost_gamma = config.cost_gamma_after(loaded.progress.frames);
+        let policy = TrainedPolicy { cost_gamma, ..policy };
         Ok(if loaded.progress.returns.len() == critics {
             policy.in_units_of(&loaded.progress.returns)
         } else {
@@ -213,6 +218,12 @@ impl TrainedPolicy {
             return &[];
         }
         self.returns.get(1..).unwrap_or_default()
+    }
+
+    /// Discount of the costs that its critics predict.
+    #[must_use]
+    pub fn cost_gamma(&self) -> f64 {
+        self.cost_gamma
     }
 
     /// A policy for the processor, whose weights `restore` puts into a learner, if `check_fits`

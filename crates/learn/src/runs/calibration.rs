@@ -59,10 +59,14 @@ pub struct Calibration {
     pub bins: Vec<Bin>,
 }
 
-/// All predictions of some episodes.
+/// All predictions of some episodes, of costs discounted by `gamma`
+/// ([`TrainConfig::cost_gamma_after`]).
 #[must_use]
-pub fn predictions(played: &[(Episode, Trace)], config: &TrainConfig) -> Vec<Prediction> {
-    let gamma = gamma(config);
+pub fn predictions(
+    played: &[(Episode, Trace)],
+    config: &TrainConfig,
+    gamma: f64,
+) -> Vec<Prediction> {
     let mut all = Vec::new();
     for (number, (episode, trace)) in played.iter().enumerate() {
         for (constraint, (expected, costs)) in trace.expected.iter().zip(&trace.costs).enumerate() {
@@ -89,7 +93,11 @@ pub fn predictions(played: &[(Episode, Trace)], config: &TrainConfig) -> Vec<Pre
 
 /// The agreement of each critic.
 #[must_use]
-pub fn calibrate(predictions: &[Prediction], config: &TrainConfig) -> Vec<Calibration> {
+pub fn calibrate(
+    predictions: &[Prediction],
+    config: &TrainConfig,
+    gamma: f64,
+) -> Vec<Calibration> {
     let one = |(index, constraint): (usize, &crate::config::Constraint)| {
         let own = |one: &&Prediction| {
             one.constraint == index && one.cut <= CUT && one.predicted.is_finite()
@@ -105,7 +113,7 @@ pub fn calibrate(predictions: &[Prediction], config: &TrainConfig) -> Vec<Calibr
             .filter(|some| !some.is_empty());
         Calibration {
             term: constraint.term.clone(),
-            gamma: gamma(config),
+            gamma,
             steps: count,
             bias: mean(&known, |one| one.predicted - one.observed),
             error: mean(&known, |one| (one.predicted - one.observed).powi(2)).sqrt(),
@@ -120,10 +128,6 @@ pub fn calibrate(predictions: &[Prediction], config: &TrainConfig) -> Vec<Calibr
     };
     let critics = predictions.iter().map(|one| one.constraint + 1).max().unwrap_or(0);
     config.constraints.iter().enumerate().take(critics).map(one).collect()
-}
-
-fn gamma(config: &TrainConfig) -> f64 {
-    config.learning.cost_gamma.unwrap_or(config.learning.gamma)
 }
 
 #[cfg(test)]
@@ -155,28 +159,24 @@ mod tests {
         let mut config =
             TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
         config.constraints = vec![Constraint { term: None, budget: 5.0 }];
-        (
-            config.learning.gamma,
-            config.learning.cost_gamma,
-            config.learning.bootstrap_cost_time_outs,
-        ) = (0.5, None, Some(true));
-        let all = predictions(&[played(&[1.0, 0.0, 4.0], &[3.0, 2.0, 3.0], false)], &config);
+        config.learning.bootstrap_cost_time_outs = Some(true);
+        let all = predictions(&[played(&[1.0, 0.0, 4.0], &[3.0, 2.0, 3.0], false)], &config, 0.5);
         assert_eq!(all.iter().map(|one| one.observed).collect::<Vec<_>>(), [2.0, 2.0, 4.0]);
         assert_eq!(
             all.iter().map(|one| (one.step, one.cut)).collect::<Vec<_>>(),
             [(0, 0.0), (1, 0.0), (2, 0.0)]
         );
-        let one = calibrate(&all, &config).swap_remove(0);
+        let one = calibrate(&all, &config, 0.5).swap_remove(0);
         assert_eq!((one.steps, one.bias, one.bins.len(), one.gamma), (3, 0.0, 3, 0.5));
         assert!((one.error - (2.0f64 / 3.0).sqrt()).abs() < 1e-12);
         assert_eq!(one.bins[0], Bin { steps: 1, predicted: 2.0, observed: 2.0 });
-        let cut = predictions(&[played(&[1.0, 0.0, 4.0], &[3.0, 2.0, 3.0], true)], &config);
+        let cut = predictions(&[played(&[1.0, 0.0, 4.0], &[3.0, 2.0, 3.0], true)], &config, 0.5);
         assert_eq!(cut.iter().map(|one| one.cut).collect::<Vec<_>>(), [0.125, 0.25, 0.5]);
-        assert_eq!(calibrate(&cut, &config)[0].steps, 0, "too much of it was never seen");
-        assert!(calibrate(&[], &config).is_empty());
+        assert_eq!(calibrate(&cut, &config, 0.5)[0].steps, 0, "too much of it was never seen");
+        assert!(calibrate(&[], &config, 0.5).is_empty());
         // Where a time-out is an end of the task, nothing is cut off.
         config.learning.bootstrap_cost_time_outs = Some(false);
-        let ends = predictions(&[played(&[1.0, 0.0, 4.0], &[3.0, 2.0, 3.0], true)], &config);
-        assert_eq!(calibrate(&ends, &config)[0].steps, 3);
+        let ends = predictions(&[played(&[1.0, 0.0, 4.0], &[3.0, 2.0, 3.0], true)], &config, 0.5);
+        assert_eq!(calibrate(&ends, &config, 0.5)[0].steps, 3);
     }
 }

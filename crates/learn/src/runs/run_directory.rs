@@ -206,7 +206,8 @@ impl RunDirectory {
             )?;
         }
         for closing in closings.iter().filter(|closing| closing.selected) {
-            let all = calibrate(&predictions(&closing.played, config), config);
+            let gamma = config.cost_gamma_after(closing.frames);
+            let all = calibrate(&predictions(&closing.played, config, gamma), config, gamma);
             if !all.is_empty() {
                 write_json(
                     &self.path.join(CALIBRATION),

@@ -347,6 +347,8 @@ impl Session {
             learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
         self.learner.exploration_coefficient =
             learning.exploration_coefficient + (last - learning.exploration_coefficient) * done;
+        (self.learner.config.learning.gamma, self.learner.config.learning.gae_lambda) =
+            learning.horizon_after(done);
         if learning.budget_annealing.is_some() || self.config.keeps_a_margin() {
             for (constraint, one) in self.config.constraints.iter().enumerate() {
                 let name = match &one.term {

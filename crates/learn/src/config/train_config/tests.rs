@@ -17,6 +17,12 @@ fn bad_settings_are_refused_by_name() {
     };
     refuse(|c| (c.sampling.lanes, c.sampling.groups) = (33, 2), "number of worlds");
     refuse(|c| c.learning.gamma = 1.5, "gamma");
+    refuse(|c| c.learning.final_gamma = Some(1.1), "the final gamma cannot be 1.1");
+    refuse(|c| c.learning.final_gae_lambda = Some(-0.1), "the final lambda cannot be -0.1");
+    refuse(
+        |c| (c.algorithm, c.learning.final_gamma) = (AlgorithmKind::Cup, Some(1.0)),
+        "below 1 for CUP",
+    );
     refuse(|c| c.learning.rate = f64::NAN, "learning rate");
     refuse(|c| c.constraints[0].budget = -1.0, "budget");
     refuse(|c| c.frames = 0, "frames");
@@ -77,4 +83,20 @@ fn episodes_of_a_file_are_as_long_as_it_says() {
     let mixed = TrainConfig::new(AlgorithmKind::PpoPid, Preset::Quick, both).unwrap();
     assert_eq!(mixed.episode_steps, 525);
     std::fs::remove_file(path).unwrap();
+}
+
+/// The discount of costs is that of rewards at the time, but for one of their own.
+#[test]
+fn a_discount_goes_to_its_end_in_a_straight_line() {
+    let mut config =
+        TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+    config.frames = 1000;
+    let learning = &mut config.learning;
+    (learning.gamma, learning.final_gamma) = (0.75, Some(1.0));
+    (learning.gae_lambda, learning.final_gae_lambda) = (0.5, Some(0.0));
+    let all = [0.0, 0.5, 1.0].map(|share| config.learning.horizon_after(share));
+    assert_eq!(all, [(0.75, 0.5), (0.875, 0.25), (1.0, 0.0)]);
+    assert_eq!([0, 500, 2000].map(|frames| config.cost_gamma_after(frames)), [0.75, 0.875, 1.0]);
+    config.learning.cost_gamma = Some(0.6);
+    assert_eq!(config.cost_gamma_after(500), 0.6);
 }
