@@ -244,9 +244,6 @@ impl LearningConfig {
         let between = |first: f64, last: Option<f64>| {
             first + (last.unwrap_or(first) - first) * share.min(1.0)
         };
-        (
-            between(self.gamma, self.final_gamma),
-            between(self.gae_lambda, self.final_gae_lambda),
-        )
+        (between(self.gamma, self.final_gamma), between(self.gae_lambda, self.final_gae_lambda))
     }
 }
