@@ -93,11 +93,7 @@ pub fn predictions(
 
 /// The agreement of each critic.
 #[must_use]
-pub fn calibrate(
-    predictions: &[Prediction],
-    config: &TrainConfig,
-    gamma: f64,
-) -> Vec<Calibration> {
+pub fn calibrate(predictions: &[Prediction], config: &TrainConfig, gamma: f64) -> Vec<Calibration> {
     let one = |(index, constraint): (usize, &crate::config::Constraint)| {
         let own = |one: &&Prediction| {
             one.constraint == index && one.cut <= CUT && one.predicted.is_finite()
