@@ -235,15 +235,26 @@ impl LearningConfig {
     /// The learning rate after a share of the schedule, from 0 to 1.
     #[must_use]
     pub fn rate_after(&self, share: f64) -> f64 {
-        self.rate + (self.final_rate.unwrap_or(self.rate) - self.rate) * share.min(1.0)
+        between(self.rate, self.final_rate, share)
+    }
+
+    /// Weight of the exploration loss after a share of the schedule, from 0 to 1.
+    #[must_use]
+    pub fn exploration_after(&self, share: f64) -> f64 {
+        between(self.exploration_coefficient, self.final_exploration_coefficient, share)
     }
 
     /// Discount and lambda after a share of the schedule, from 0 to 1.
     #[must_use]
     pub fn horizon_after(&self, share: f64) -> (f64, f64) {
-        let between = |first: f64, last: Option<f64>| {
-            first + (last.unwrap_or(first) - first) * share.min(1.0)
-        };
-        (between(self.gamma, self.final_gamma), between(self.gae_lambda, self.final_gae_lambda))
+        (
+            between(self.gamma, self.final_gamma, share),
+            between(self.gae_lambda, self.final_gae_lambda, share),
+        )
     }
+}
+
+/// A linear schedule after a share of it; constant without an end.
+fn between(first: f64, last: Option<f64>, share: f64) -> f64 {
+    first + (last.unwrap_or(first) - first) * share.min(1.0)
 }

@@ -343,10 +343,7 @@ impl Session {
         let done = self.config.progress(self.frames);
         self.learner.rate = learning.rate_after(done);
         self.means.add("learning_rate", self.learner.rate);
-        let last =
-            learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
-        self.learner.exploration_coefficient =
-            learning.exploration_coefficient + (last - learning.exploration_coefficient) * done;
+        self.learner.exploration_coefficient = learning.exploration_after(done);
         (self.learner.config.learning.gamma, self.learner.config.learning.gae_lambda) =
             learning.horizon_after(done);
         if learning.budget_annealing.is_some() || self.config.keeps_a_margin() {
