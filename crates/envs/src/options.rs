@@ -21,6 +21,18 @@ pub enum ObservationKind {
     Grey,
 }
 
+impl ObservationKind {
+    /// Bytes of a pixel.
+    #[must_use]
+    pub fn channels(self) -> usize {
+        match self {
+            ObservationKind::Rgb | ObservationKind::Segmented => 3,
+            ObservationKind::RgbDepth => 4,
+            ObservationKind::Grey => 1,
+        }
+    }
+}
+
 /// Order of an observation's axes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Layout {

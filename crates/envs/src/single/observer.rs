@@ -45,11 +45,7 @@ impl Eye {
     ) -> Eye {
         let mut renderer = Renderer::new(scene, view);
         renderer.set_options(looks);
-        let channels = match options.observation {
-            ObservationKind::Rgb | ObservationKind::Segmented => 3,
-            ObservationKind::RgbDepth => 4,
-            ObservationKind::Grey => 1,
-        };
+        let channels = options.observation.channels();
         let frame = [usize::from(options.size.height), usize::from(options.size.width), channels];
         let stack = options.frame_stack;
         let colours = if options.published_colours {

@@ -24,6 +24,7 @@ use crate::sampling::auxiliary::Auxiliary;
 use crate::sampling::gather::Gatherer;
 use crate::sampling::privileged::Privileged;
 use crate::sampling::rollout::Rollout;
+use crate::sampling::rollout_memory;
 use crate::sampling::sampler::{Sampler, SamplerState, dealt_anew};
 use crate::sampling::shared_rollout::{all_states, complete};
 use crate::team::Team;
@@ -152,6 +153,8 @@ impl Session {
             )));
         }
         let (shares, own_parts) = team.shares(sampling.lanes, sampling.samplers);
+        let own_lanes = shares[own_parts.clone()].iter().map(ExactSizeIterator::len).sum();
+        rollout_memory::check(&config, own_lanes)?;
         let privileged = Privileged::new(&config);
         let auxiliary = Auxiliary::new(&config);
         let predicted = auxiliary.insight();

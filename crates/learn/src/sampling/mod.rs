@@ -5,6 +5,7 @@ pub mod auxiliary;
 pub mod gather;
 pub mod privileged;
 pub mod rollout;
+pub mod rollout_memory;
 pub mod sampler;
 pub mod shaping;
 pub mod shared_rollout;
