@@ -75,11 +75,27 @@ pub fn write_note(text: String) {
     let _ = std::io::Write::write_all(&mut std::io::stderr().lock(), line.as_bytes());
 }
 
-/// A text by anyone as it may be printed: nothing in it commands the terminal, ends the line or turns
-/// its order round.
+/// A word of more letters is printed by its ends, quotation marks among them: any path that a person typed is shorter.
+const LONGEST_WORD: usize = 1000;
+
+/// A text by anyone as it may be printed: nothing in it commands the terminal, ends the line, turns
+/// its order round or fills the screen.
 pub fn presentable(text: &str) -> String {
     let plain = |letter: char| !letter.is_control() && !is_direction(letter);
-    text.chars().map(|letter| if plain(letter) { letter } else { '\u{fffd}' }).collect()
+    let shown = |letter: char| if plain(letter) { letter } else { '\u{fffd}' };
+    let word = |word: &str| -> String {
+        if word.chars().nth(LONGEST_WORD).is_none() {
+            return word.chars().map(shown).collect();
+        }
+        let end: Vec<char> = word.chars().rev().take(2).collect();
+        word.chars()
+            .take(100)
+            .chain("...".chars())
+            .chain(end.into_iter().rev())
+            .map(shown)
+            .collect()
+    };
+    text.split(' ').map(word).collect::<Vec<String>>().join(" ")
 }
 
 /// Lines on standard output of a command whose exit code is its result. Where the reader goes away

@@ -133,6 +133,28 @@ fn no_command_knows_an_unknown_environment() {
 }
 
 #[test]
+fn a_word_without_end_is_not_printed_whole() {
+    let den = Den::new("endless");
+    let word = "A".repeat(100_000);
+    for command in [
+        "rollout",
+        "train",
+        "eval",
+        "record -o a.gif",
+        "verify",
+        "replay",
+        "sweep",
+        "train RemedyRushLevel1-v0 --out new --rules",
+        "train RemedyRushLevel1-v0 --out new --init-from",
+        "train RemedyRushLevel1-v0 --out new --set",
+    ] {
+        let words: Vec<&str> = command.split(' ').chain([word.as_str()]).collect();
+        let error = den.refused(&words);
+        assert!(error.contains("AAAAAAAA"), "{command}: the word is not named: {error}");
+    }
+}
+
+#[test]
 fn what_cannot_be_read_is_named() {
     let den = Den::new("inputs");
     let before = den.contents();
