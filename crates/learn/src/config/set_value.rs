@@ -118,6 +118,10 @@ pub(super) fn refused(
             let part = parts.keys().next().map_or("", String::as_str);
             format!("set by its parts, such as {name}.{part}=VALUE")
         }
+        Value::Array(entries) if expected == "a sequence" => match entries.first() {
+            Some(entry) => format!("a list such as [{entry}]"),
+            None => "a list in brackets; `hasard settings` says of what".into(),
+        },
         _ => in_words(expected),
     };
     // What is wrong within a list, and not the list.
@@ -172,7 +176,16 @@ mod tests {
                 "learning.portable=maybe",
                 "learning.portable cannot be 'maybe'; it must be true or false",
             ),
-            ("network.dense=32", "network.dense cannot be '32'; it must be a list such as [32]"),
+            ("network.dense=32", "network.dense cannot be '32'; it must be a list such as [256]"),
+            (
+                "network.convolutions=32@4/4",
+                "network.convolutions cannot be '32@4/4'; it must be a list such as \
+                 [{\"channels\":32,\"kernel\":8,\"stride\":6}]",
+            ),
+            (
+                "learning.critic_inputs=in-view",
+                "learning.critic_inputs cannot be 'in-view'; it must be a list in brackets; `hasard settings` says of what",
+            ),
             (
                 "network.dense=[32,\"a\"]",
                 "network.dense cannot be '[32,\"a\"]'; in it, string \"a\" must be a whole number of at least 0",
