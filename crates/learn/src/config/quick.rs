@@ -1,5 +1,7 @@
 //! The preset `quick`: settings of our own that learn within minutes.
 
+use hasard_envs::Scenario;
+
 use crate::config::{Convolution, Preset, TrainConfig};
 
 impl TrainConfig {
@@ -8,7 +10,14 @@ impl TrainConfig {
         self.frames = frames;
         if self.preset == Preset::Quick {
             self.algorithm_settings.pid_reference_budget = Some(reference_budget(frames));
+            let farther = frames >= LONG && self.all_tasks(|scenario| scenario.rewards_foresight);
+            self.learning.final_gamma = farther.then_some(0.99);
+            self.learning.final_gae_lambda = farther.then_some(0.95);
         }
+    }
+
+    fn all_tasks(&self, are: impl Fn(&Scenario) -> bool) -> bool {
+        self.env.env_ids().is_ok_and(|ids| ids.iter().all(|id| are(&id.scenario)))
     }
 
     /// Gives it so many worlds; `quick` has no more minibatches than those.
@@ -19,6 +28,9 @@ impl TrainConfig {
         }
     }
 }
+
+/// Frames of a run that has the time to learn what follows soon before it looks further ahead.
+const LONG: u64 = 10_000_000;
 
 /// The reference budget of `quick`. What a multiplier has to become is a matter of the task, and a
 /// short run has few updates to get there: 450 for 2 million frames, less for longer ones, with the
@@ -41,8 +53,7 @@ pub(super) fn quicken(config: &mut TrainConfig) {
     config.network.recurrent = Some(256);
     // Where an action's worth shows soon, advantages over a few steps scatter less, and what is
     // learned from four million frames is learned from two (docs/tried/levers.md).
-    let tasks = config.env.env_ids();
-    if tasks.is_ok_and(|ids| ids.iter().all(|id| id.scenario.prompt)) {
+    if config.all_tasks(|scenario| scenario.prompt) {
         (config.learning.gamma, config.learning.gae_lambda) = (0.97, 0.7);
     }
     // Before its first delivery Armament Burden earns nothing, and its critics' noise is 0.001.
@@ -105,6 +116,30 @@ mod tests {
         assert_eq!(few(&["learning.minibatches=3", "sampling.lanes=2"]), 3, "what is set stays");
         let trust = quick(AlgorithmKind::Cpo, "ArmamentBurdenLevel1-v0").learning;
         assert_eq!((trust.epochs, trust.minibatches), (1, 1));
+    }
+
+    #[test]
+    fn long_runs_look_further_ahead_in_the_end_where_that_pays() {
+        let last = |id: &str, frames: u64| {
+            let mut config = quick(AlgorithmKind::PpoPid, id);
+            config.set_frames(frames);
+            (config.learning.final_gamma, config.learning.final_gae_lambda)
+        };
+        let farther = (Some(0.99), Some(0.95));
+        assert_eq!(last("RemedyRushLevel1-v0", 10_000_000), farther);
+        assert_eq!(last("RemedyRushLevel1-v0", 9_999_999), (None, None));
+        for id in ["VolcanicVentureLevel1-v0", "RemedyRushLevel1-v0,VolcanicVentureLevel1-v0"] {
+            assert_eq!(last(id, 10_000_000), (None, None), "{id}");
+        }
+        // What a user sets is the horizon of the whole run.
+        let config = quick(AlgorithmKind::PpoPid, "RemedyRushLevel1-v0");
+        let set = |settings: &[&str]| {
+            let settings: Vec<String> = settings.iter().map(|one| (*one).to_string()).collect();
+            let learning = config.with_all(&settings).unwrap().learning;
+            (learning.final_gamma, learning.final_gae_lambda)
+        };
+        assert_eq!(set(&["learning.gamma=0.97", "learning.gae_lambda=0.7"]), (None, None));
+        assert_eq!(set(&["learning.final_gamma=0.98", "learning.gamma=0.9"]).0, Some(0.98));
     }
 
     #[test]

@@ -74,8 +74,8 @@ fn wrong(error: impl std::fmt::Display) -> LearnError {
 
 impl TrainConfig {
     /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`. A new learning rate
-    /// is a constant one, unless `learning.final_rate` is set after it; for lanes see
-    /// [`TrainConfig::set_lanes`].
+    /// is a constant one, unless `learning.final_rate` is set after it, and so for `learning.gamma`
+    /// and `learning.gae_lambda`; for lanes see [`TrainConfig::set_lanes`].
     ///
     /// # Errors
     /// When the text is no `NAME=VALUE`, or there is no such setting, or others hang on it, or it
@@ -112,6 +112,8 @@ impl TrainConfig {
         }
         match name.as_str() {
             "learning.rate" => config.learning.final_rate = None,
+            "learning.gamma" => config.learning.final_gamma = None,
+            "learning.gae_lambda" => config.learning.final_gae_lambda = None,
             "sampling.lanes" => config.set_lanes(config.sampling.lanes),
             _ => {}
         }
@@ -126,7 +128,8 @@ impl TrainConfig {
         // First those that decide others too: these may be among the rest.
         let (first, then): (Vec<&String>, Vec<&String>) = settings.iter().partition(|setting| {
             let name = setting.split('=').next().unwrap_or_default().replace('/', ".");
-            ["learning.rate", "sampling.lanes"].contains(&name.as_str())
+            ["learning.rate", "learning.gamma", "learning.gae_lambda", "sampling.lanes"]
+                .contains(&name.as_str())
         });
         first.into_iter().chain(then).try_fold(self.clone(), |config, setting| {
             config
@@ -160,12 +163,16 @@ impl TrainConfig {
         );
         let mut changes = Vec::new();
         differences("", &before, &after, &mut changes);
+        // What was asked for is refused by its name, before what hangs on it.
+        let asked =
+            |setting: &str| settings.iter().any(|one| one.split('=').next() == Some(setting));
+        let fixed = changes.iter().filter(|(setting, ..)| !may_change(setting));
+        if let Some((setting, from, to)) = fixed.min_by_key(|(setting, ..)| !asked(setting)) {
+            return Err(LearnError::Config(format!(
+                "'{setting}' is {from} in this run and cannot become {to} within it; begin another with --init-from"
+            )));
+        }
         for (setting, from, to) in changes {
-            if !may_change(&setting) {
-                return Err(LearnError::Config(format!(
-                    "'{setting}' is {from} in this run and cannot become {to} within it; begin another with --init-from"
-                )));
-            }
             if !CHANGE_NOTHING.iter().any(|group| within(&setting, group)) {
                 config.changes.push(Change { frames, setting, from, to });
             }

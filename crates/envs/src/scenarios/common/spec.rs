@@ -136,6 +136,8 @@ pub struct ScenarioSpec {
     /// What an action earns or costs follows within a second or two, so that learning need not look
     /// far ahead.
     pub prompt: bool,
+    /// Who has learned what follows soon returns more by looking further ahead.
+    pub rewards_foresight: bool,
     /// Place in the paper's tables, from 0.
     pub paper_place: usize,
     /// What stands for it in the fingerprint of a state.
@@ -176,6 +178,7 @@ impl ScenarioSpec {
             saute_unsafe_reward: -0.01,
             penalty_scales: [[1.0; 2]; 3],
             prompt: false,
+            rewards_foresight: false,
             paper_place: usize::MAX,
             number: -1,
             moments: (&[], 0),

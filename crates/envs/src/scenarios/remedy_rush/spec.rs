@@ -15,6 +15,7 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     saute_unsafe_reward: -0.025,
     penalty_scales: [[1.0; 2], [1.0; 2], [1.0, 0.3]],
     prompt: true,
+    rewards_foresight: true,
     paper_place: 2,
     number: 4,
     moments: (MOMENTS, 0),

@@ -20,7 +20,7 @@ fn runs_are_unlike_by_what_they_learn_with() {
     );
     let (name, ..) = one.unlike(&with(&["reporting.window=7", "reporting.keep=7"])).unwrap();
     assert_eq!(name, "reporting.window");
-    let other = with(&["learning.gamma=0.5"]);
+    let (one, other) = (with(&["learning.gamma=0.97"]), with(&["learning.gamma=0.5"]));
     let (name, own, others) = one.unlike(&other).unwrap();
     assert_eq!((name.as_str(), own, others), ("learning.gamma", 0.97.into(), 0.5.into()));
 }
