@@ -72,6 +72,11 @@ fn wrong(error: impl std::fmt::Display) -> LearnError {
     LearnError::Config(error.to_string())
 }
 
+/// The name in `NAME=VALUE`, with dots between its parts.
+fn name_in(setting: &str) -> String {
+    setting.split('=').next().unwrap_or_default().replace('/', ".")
+}
+
 impl TrainConfig {
     /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`. A new learning rate
     /// is a constant one, unless `learning.final_rate` is set after it, and so for `learning.gamma`
@@ -127,9 +132,8 @@ impl TrainConfig {
     pub fn with_all(&self, settings: &[String]) -> Result<TrainConfig, LearnError> {
         // First those that decide others too: these may be among the rest.
         let (first, then): (Vec<&String>, Vec<&String>) = settings.iter().partition(|setting| {
-            let name = setting.split('=').next().unwrap_or_default().replace('/', ".");
             ["learning.rate", "learning.gamma", "learning.gae_lambda", "sampling.lanes"]
-                .contains(&name.as_str())
+                .contains(&name_in(setting).as_str())
         });
         first.into_iter().chain(then).try_fold(self.clone(), |config, setting| {
             config
@@ -164,8 +168,7 @@ impl TrainConfig {
         let mut changes = Vec::new();
         differences("", &before, &after, &mut changes);
         // What was asked for is refused by its name, before what hangs on it.
-        let asked =
-            |setting: &str| settings.iter().any(|one| one.split('=').next() == Some(setting));
+        let asked = |setting: &str| settings.iter().any(|one| name_in(one) == setting);
         let fixed = changes.iter().filter(|(setting, ..)| !may_change(setting));
         if let Some((setting, from, to)) = fixed.min_by_key(|(setting, ..)| !asked(setting)) {
             return Err(LearnError::Config(format!(

@@ -26,7 +26,7 @@ fn picture(options: &EnvOptions) -> usize {
 
 fn fits(config: &TrainConfig, lanes: usize, picture: usize, memory: u64) -> Result<(), LearnError> {
     let steps = config.sampling.rollout;
-    // At most 2^18 worlds, 2^12 steps and 2^27 bytes: no overflow.
+    // At most 2^16 worlds, 2^13 steps and 2^27 bytes: no overflow.
     let needed = (lanes as u64) * (steps as u64 + 1) * picture as u64;
     if needed <= memory {
         return Ok(());

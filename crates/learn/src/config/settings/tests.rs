@@ -110,8 +110,10 @@ fn changes_of_a_resumed_run_are_written_down() {
         changed.resumed_with(&all(&["frames=5000000"]), 5_001_216).is_ok(),
         "it ended with its last rollout"
     );
-    let message = config.resumed_with(&all(&["learning.gamma=0.9"]), 0).unwrap_err().to_string();
-    assert!(message.contains("learning.gamma") && message.contains("--init-from"), "{message}");
+    for gamma in ["learning.gamma=0.9", "learning/gamma=0.9"] {
+        let message = config.resumed_with(&all(&[gamma]), 0).unwrap_err().to_string();
+        assert!(message.contains("learning.gamma") && message.contains("--init-from"), "{message}");
+    }
 }
 
 /// Rates and the multiplier's speed hang on frames. Gone on with for twice as long, a run
