@@ -186,7 +186,9 @@ pub fn evaluate(
         }
     }
     let summary = Evaluation::of(&all, &constraints).map_err(|error| Some(error.to_string()))?;
-    rows.push(episode_lines::summary_row(&summary, &all));
+    let mut row = episode_lines::summary_row(&summary, &all);
+    row["summary"]["run_frames"] = json!(policy.run_frames());
+    rows.push(row);
     Ok(rows)
 }
 

@@ -83,7 +83,8 @@ pub fn experiments_csv(groups: &[Group]) -> String {
 }
 
 /// A row for each run. What begins with `judged` is what scores rest on, the scalar cost with the
-/// upper 95 % end; scores are empty where an end of their scale is missing.
+/// upper 95 % end; that end, and the feasible score, are empty where the cost has no interval, and
+/// both scores where an end of their scale is missing.
 #[must_use]
 pub fn runs_csv(groups: &[Group], baselines: &Baselines) -> String {
     let mut text = String::from(
@@ -112,9 +113,9 @@ pub fn runs_csv(groups: &[Group], baselines: &Baselines) -> String {
             judged_by(run).to_owned(),
             optional(judged_metric(run, "return_mean").map(|one| one.mean)),
             optional(cost.map(|one| one.mean)),
-            optional(cost.map(|one| one.high())),
+            optional(cost.filter(|one| one.half_width.is_some()).map(|one| one.high())),
             optional(score.as_ref().map(|one| one.normalised)),
-            optional(score.as_ref().map(|one| one.feasible)),
+            optional(score.as_ref().and_then(|one| one.feasible)),
         ]);
     }
     text

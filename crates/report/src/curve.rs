@@ -174,6 +174,7 @@ mod tests {
             config,
             rows,
             evaluation: vec![],
+            summary: None,
             selected: None,
             calibration: vec![],
             heatmaps: vec![],

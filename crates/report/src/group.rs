@@ -65,6 +65,7 @@ impl Group {
                     }
                 }
                 warnings.extend(kept.iter().find_map(|run| selected_otherwise(&kept[0], run)));
+                warnings.extend(kept.iter().find_map(|run| of_another_version(&kept[0], run)));
                 let shown = kept[0].config.options.iter().filter(|(key, _)| SHOWN.contains(&key.as_str()));
                 Group { shown: shown.map(|(key, value)| (key.clone(), value.clone())).collect(), runs: kept }
             })
@@ -187,6 +188,19 @@ fn selected_otherwise(first: &Run, other: &Run) -> Option<Warning> {
     })
 }
 
+/// What to say of two runs of one experiment that two versions of the program made.
+fn of_another_version(first: &Run, other: &Run) -> Option<Warning> {
+    let (own, others) = (first.config.version.as_ref()?, other.config.version.as_ref()?);
+    (own != others).then(|| Warning {
+        problem: format!(
+            "was trained by version {others}, seed {} of the same experiment by {own}; they are averaged, though versions may learn differently (CHANGELOG.md)",
+            first.config.seed
+        ),
+        path: other.path.clone(),
+        line: 0,
+    })
+}
+
 /// Adds, to experiments that would look the same, what they differ in.
 fn distinguish(groups: &mut [Group]) {
     let seen: Vec<(Config, BTreeMap<String, String>)> =
@@ -253,6 +267,7 @@ mod tests {
                 config,
                 rows: vec![],
                 evaluation: vec![],
+                summary: None,
                 selected: None,
                 calibration: vec![],
                 heatmaps: vec![],

@@ -226,8 +226,8 @@ fn a_report_on_many_experiments() {
     );
 
     // Volcanic Venture: random returns 5, so P3O's score is (R - 5) / (PPO - 5) of the same
-    // report's own means. Its costs end at four fifths of the budget; nothing was evaluated, so
-    // that the means decide.
+    // report's own means. Nothing was evaluated: its costs have no interval, and no feasible score
+    // says that they are within.
     let mean_of = |algo: &str, seed: u32| {
         last_ten(&runs.join(format!("main/VolcanicVentureLevel1-v0/{algo}/seed{seed}")))
     };
@@ -238,17 +238,13 @@ fn a_report_on_many_experiments() {
         safety.lines().find(|line| line.starts_with("| Volcanic Venture | 1 | P3O |")).unwrap();
     let cells: Vec<&str> = row.split(" | ").collect();
     assert!(
-        cells[4].starts_with(&format!("{score:.2}"))
-            && cells[6].starts_with(&format!("{score:.2}")),
+        cells[4..6] == ["-", "-"] && cells[6].starts_with(&format!("{score:.2}")),
         "{score}: {row}"
     );
     assert_eq!((cells[7], cells[10], cells[11]), ("end of training", "40k", "10k"), "{row}");
     let ppo_row =
         safety.lines().find(|line| line.starts_with("| Volcanic Venture | 1 | PPO |")).unwrap();
-    assert!(
-        ppo_row.contains("| 0.00 ± 0.00 | 0.20"),
-        "PPO is five times above the budget: {ppo_row}"
-    );
+    assert!(ppo_row.contains("| - | - | 1.00 ± "), "PPO is the end of its scale: {ppo_row}");
 
     // Same runs, same bytes.
     let again = folder.0.join("again");

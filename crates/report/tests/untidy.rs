@@ -197,7 +197,8 @@ fn means_over_environments_are_over_the_same_ones() {
     let (both, alone) = over.split_once("RemedyRushLevel1-v0 alone").expect(over);
     // 0.5 and 0.2 of the way from chance to PPO.
     assert!(
-        both.contains("| 1 | PPOPID | 0.35 (n=2) | 0.35 (n=2) |") && !both.contains("| CUP |"),
+        both.contains("| 1 | PPOPID | 0.35 (n=2) | 2 of 2 | 0.35 (n=2) |")
+            && !both.contains("| CUP |"),
         "{both}"
     );
     assert!(
@@ -219,6 +220,95 @@ fn runs_in_the_trash_count_nowhere() {
     let trash = folder.0.join("runs/.trash");
     let written = write_report(&[trash], &folder.0.join("out2"), "Trash").unwrap();
     assert_eq!(written.runs, 1);
+}
+
+/// PPO is 1 among runs of its own length, whatever longer ones stand in the report.
+#[test]
+fn longer_runs_change_no_score() {
+    let folder = Folder::new("lengths");
+    for (name, algo, frames, earned) in
+        [("ppo", "PPO", 1e6, 12.0), ("pid", "PPOPID", 1e6, 7.0), ("far", "PPOPID", 4e6, 22.0)]
+    {
+        close(&run(&folder, name, ENV, algo, frames, ""), earned, frames, 0.5);
+    }
+    chance(&folder, ENV);
+    let score_of = |rows: &[String], name: &str| -> String {
+        let row = rows.iter().find(|row| row.contains(&format!("/{name},"))).unwrap();
+        row.rsplit(',').next().unwrap().to_owned()
+    };
+    let (_, text, rows) = report(&folder);
+    assert_eq!([score_of(&rows, "pid"), score_of(&rows, "far")], ["0.5", "2"]);
+    let said = "for want of one as long: RemedyRushLevel1-v0 (4M, PPO 1M).";
+    assert!(text.contains(said), "{text}");
+    close(&run(&folder, "ppo-far", ENV, "PPO", 4e6, ""), 42.0, 4e6, 0.5);
+    let (_, text, rows) = report(&folder);
+    assert_eq!([score_of(&rows, "pid"), score_of(&rows, "far")], ["0.5", "0.5"]);
+    assert!(!text.contains("for want of one as long"), "{text}");
+}
+
+/// What stands side by side but was not trained alike says in what.
+#[test]
+fn settings_that_differ_are_named() {
+    let folder = Folder::new("unlike");
+    let slow = ",\"learning\":{\"rate\":0.0001}";
+    let (fast, hard) =
+        (",\"learning\":{\"rate\":0.0005}", ",\"hard\":true,\"learning\":{\"rate\":0.0005}");
+    for (name, algo, options) in
+        [("ppo", "PPO", slow), ("lag", "PPOLag", fast), ("hard", "PPO", hard)]
+    {
+        close(&run(&folder, name, ENV, algo, 1e6, options), 12.0, 1e6, 0.5);
+    }
+    let (_, text, _) = report(&folder);
+    let unlike = "| learning.rate | 0.0001: PPO; 0.0005: PPOLag |";
+    assert!(text.contains(unlike), "{text}");
+    let compared = text.split("## Hard constraint").nth(1).unwrap();
+    for row in ["| soft | learning.rate 0.0001 |", "| hard | learning.rate 0.0005 |"] {
+        assert!(compared.contains(row), "{row}: {compared}");
+    }
+}
+
+/// Episodes of `hasard eval` that the run has outgrown are not its own; of the others its summary
+/// has the interval, which is a bootstrap's where costs are skewed.
+#[test]
+fn a_later_evaluation_counts_by_its_summary_and_until_the_run_goes_on() {
+    let folder = Folder::new("outgrown");
+    let path = run(&folder, "one", ENV, "PPOPID", 1e6, "");
+    let lines = [(ENV, 1, 10.0), (ENV, 2, 20.0)];
+    let write = |frames: f64| {
+        episodes(&path, "eval.jsonl", &lines);
+        let text = std::fs::read_to_string(path.join("eval.jsonl")).unwrap();
+        let summary = format!(
+            "{{\"summary\":{{\"episodes\":2,\"return_mean\":15,\"return_ci95\":3.5,\"cost_mean\":1,\"cost_ci95\":0,\
+             \"cost_interval\":[0.5,5.5],\"length_mean\":525,\"length_ci95\":0,\"run_frames\":{frames}}}}}\n"
+        );
+        std::fs::write(path.join("eval.jsonl"), text + &summary).unwrap();
+    };
+    write(1e6);
+    let (written, text, rows) = report(&folder);
+    assert_eq!(problems(&written), "");
+    assert!(rows[0].contains(",selected checkpoint,15,1,5.5,"), "{rows:?}");
+    assert!(text.contains("15.00 ± 3.50"), "{text}");
+    write(5e5);
+    let (written, _, rows) = report(&folder);
+    let said = "is of a run of 500000 frames, which went on to 1000000; passed over";
+    assert!(problems(&written).contains(said), "{}", problems(&written));
+    assert!(rows[0].contains(",end of training,"), "{rows:?}");
+}
+
+/// Two versions of the program may learn differently.
+#[test]
+fn seeds_of_two_versions_are_named() {
+    let folder = Folder::new("versions");
+    for (seed, version) in [(1, "0.1.0"), (2, "0.2.0")] {
+        let options = format!(",\"version\":\"{version}\"");
+        let (env, algo, end) = (ENV, "PPOPID", (30.0, 9.0, 0.0));
+        Synthetic { env, algo, seed, frames: 1e6, reports: 20, options: &options, end }
+            .write(&folder.0.join(format!("runs/{seed}")));
+    }
+    let (written, text, _) = report(&folder);
+    let said = "was trained by version 0.2.0, seed 1 of the same experiment by 0.1.0";
+    assert!(problems(&written).contains(said), "{}", problems(&written));
+    assert!(text.contains("2 runs of 1 experiment"), "{text}");
 }
 
 /// Their means are over unlike agents, although all learned alike.

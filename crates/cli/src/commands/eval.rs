@@ -12,6 +12,7 @@ use hasard_learn::config::{Constraint, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config};
 use hasard_learn::runs::calibration::{calibrate, predictions};
+use hasard_learn::runs::checkpoint::Store;
 use hasard_learn::runs::evaluate::{Trace, play_traced};
 use hasard_learn::runs::session::MakeWorlds;
 use hasard_media::files::{WholeFile, is_special, write_whole};
@@ -98,7 +99,8 @@ pub fn run(args: &EvalArgs) -> Outcome {
             traces.push(trace);
         }
     })?;
-    let mut more = Vec::new();
+    // By which a report sees that the run has gone on since.
+    let mut more = vec![("run_frames", json!(Store::new(&run, 1).frames()))];
     if let Some(path) = &args.calibration {
         let played: Vec<(Episode, Trace)> = lines.episodes().iter().cloned().zip(traces).collect();
         more.push(("calibration", write_calibration(path, &played, &config, gamma)?));
@@ -117,7 +119,8 @@ pub fn run(args: &EvalArgs) -> Outcome {
                     value["file"].as_str().unwrap_or_default(),
                     value["seeds"]
                 ),
-                _ => print_calibration(&value)?,
+                "calibration" => print_calibration(&value)?,
+                _ => {}
             }
         }
     }

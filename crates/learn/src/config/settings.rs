@@ -26,6 +26,14 @@ const OTHERS_HANG_ON: [(&str, &str); 12] = [
     ("changes", "--resume, which writes them down"),
 ];
 
+/// Settings that decide others too, and how.
+const DECIDE_OTHERS: [(&str, fn(&mut TrainConfig)); 4] = [
+    ("learning.rate", |config| config.learning.final_rate = None),
+    ("learning.gamma", |config| config.learning.final_gamma = None),
+    ("learning.gae_lambda", |config| config.learning.final_gae_lambda = None),
+    ("sampling.lanes", |config| config.set_lanes(config.sampling.lanes)),
+];
+
 /// Settings, or groups of them, that a run may be resumed with another value of: what was learned
 /// so far stays of use.
 const MAY_CHANGE: [&str; 17] = [
@@ -115,12 +123,8 @@ impl TrainConfig {
         if let Some(kept) = all.pointer(&pointer) {
             set_value::check_keys(&name, &value, kept)?;
         }
-        match name.as_str() {
-            "learning.rate" => config.learning.final_rate = None,
-            "learning.gamma" => config.learning.final_gamma = None,
-            "learning.gae_lambda" => config.learning.final_gae_lambda = None,
-            "sampling.lanes" => config.set_lanes(config.sampling.lanes),
-            _ => {}
+        for (_, decide) in DECIDE_OTHERS.iter().filter(|(known, _)| *known == name) {
+            decide(&mut config);
         }
         Ok(config)
     }
@@ -131,10 +135,9 @@ impl TrainConfig {
     /// As [`TrainConfig::with`]; the message names the setting.
     pub fn with_all(&self, settings: &[String]) -> Result<TrainConfig, LearnError> {
         // First those that decide others too: these may be among the rest.
-        let (first, then): (Vec<&String>, Vec<&String>) = settings.iter().partition(|setting| {
-            ["learning.rate", "learning.gamma", "learning.gae_lambda", "sampling.lanes"]
-                .contains(&name_in(setting).as_str())
-        });
+        let (first, then): (Vec<&String>, Vec<&String>) = settings
+            .iter()
+            .partition(|setting| DECIDE_OTHERS.iter().any(|(known, _)| *known == name_in(setting)));
         first.into_iter().chain(then).try_fold(self.clone(), |config, setting| {
             config
                 .with(setting)

@@ -57,6 +57,8 @@ pub struct TrainedPolicy {
     returns: Vec<Moments>,
     /// Discount of the costs that its critics predict.
     cost_gamma: f64,
+    /// Frames that its run had made when it was loaded; `None` where it comes from no run.
+    run_frames: Option<u64>,
 }
 
 /// A trained agent for some worlds side by side, each with an episode of its own.
@@ -139,6 +141,7 @@ impl TrainedPolicy {
             watched,
             returns: Vec::new(),
             cost_gamma: config.cost_gamma_after(config.frames),
+            run_frames: None,
         })
     }
 
@@ -196,7 +199,7 @@ impl TrainedPolicy {
         )?;
         let critics = 1 + policy.shape.cost_critics;
         let cost_gamma = config.cost_gamma_after(loaded.progress.frames);
-        let policy = TrainedPolicy { cost_gamma, ..policy };
+        let policy = TrainedPolicy { cost_gamma, run_frames: store.frames(), ..policy };
         Ok(if loaded.progress.returns.len() == critics {
             policy.in_units_of(&loaded.progress.returns)
         } else {
@@ -218,6 +221,13 @@ impl TrainedPolicy {
             return &[];
         }
         self.returns.get(1..).unwrap_or_default()
+    }
+
+    /// Frames that its run had made when it was loaded, which may be more than its weights saw;
+    /// `None` where it comes from no run.
+    #[must_use]
+    pub fn run_frames(&self) -> Option<u64> {
+        self.run_frames
     }
 
     /// Discount of the costs that its critics predict.

@@ -104,13 +104,17 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
                 title: format!("{} - {}: {:.2}{interval}", group.name, bar.name, bar.value),
             });
             if let Some((low, high)) = bar.interval {
-                let (middle, low, high) = (x + slot / 2.0, axis.place(low), axis.place(high));
+                let middle = x + slot / 2.0;
                 let cap = (slot * 0.2).min(4.0);
-                for points in [
-                    vec![(middle, low), (middle, high)],
-                    vec![(middle - cap, low), (middle + cap, low)],
-                    vec![(middle - cap, high), (middle + cap, high)],
-                ] {
+                let mut lines = vec![vec![(middle, axis.place(low)), (middle, axis.place(high))]];
+                // An end that is cut off has no cap: it is not there.
+                for end in [low, high] {
+                    if (axis.from..=axis.to).contains(&end) {
+                        let y = axis.place(end);
+                        lines.push(vec![(middle - cap, y), (middle + cap, y)]);
+                    }
+                }
+                for points in lines {
                     drawing.shapes.push(Shape::Line {
                         points,
                         ink: Ink::Text,

@@ -63,11 +63,10 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         text: panel.title.clone(),
     });
     let ours = || panel.series.iter().filter(|series| !series.behind).map(|series| &series.curve);
-    let most_frames = ours()
-        .flat_map(|c| &c.seeds)
-        .filter_map(|(_, points)| points.last())
-        .map(|p| p.0)
-        .fold(0.0, f64::max);
+    let points = || ours().flat_map(|curve| &curve.seeds).map(|(_, points)| points);
+    let most_frames = points().filter_map(|all| all.last()).map(|p| p.0).fold(0.0, f64::max);
+    // Frames begin at 0; scores may lie below.
+    let least = points().filter_map(|all| all.first()).map(|p| p.0).fold(0.0, f64::min);
     if most_frames <= 0.0 {
         drawing.text(
             ((left + right) / 2.0, (top + bottom) / 2.0),
@@ -86,11 +85,13 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
     let low = curves().map(Curve::bottom).fold(0.0, f64::min);
     let values = ticks(low, if high > low { high } else { low + 1.0 }, 4);
     let vertical = Axis { from: values[0], to: values[values.len() - 1], start: bottom, end: top };
-    let horizontal = Axis { from: 0.0, to: most_frames, start: left, end: right };
+    let horizontal = Axis { from: least, to: most_frames, start: left, end: right };
     draw_vertical_axis(&mut drawing, &vertical, &values, left, right);
     axis_title(&mut drawing, axis, (left, right), height - 4.0);
-    let frame_ticks = ticks(0.0, most_frames, 4);
-    for &frames in frame_ticks.iter().filter(|frames| **frames <= most_frames * 1.001) {
+    let frame_ticks = ticks(least, most_frames, 4);
+    for &frames in
+        frame_ticks.iter().filter(|frames| (least..=most_frames * 1.001).contains(*frames))
+    {
         let anchor = if frames > most_frames * 0.97 { Anchor::End } else { Anchor::Middle };
         drawing.text((horizontal.place(frames), bottom + 15.0), anchor, Ink::Muted, short(frames));
     }
@@ -171,7 +172,7 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
     }
     drawing.hovers.push(Hover {
         place: [left, top, right - left, bottom - top],
-        horizontal: (0.0, most_frames),
+        horizontal: (least, most_frames),
         axis: axis.to_owned(),
         curves: cut
             .iter()

@@ -114,6 +114,8 @@ pub struct Config {
     /// Every other key that may change results, as text; nested keys are joined by dots.
     /// `safety_budget` is among them only if it is not the scenario's own.
     pub options: BTreeMap<String, String>,
+    /// The version of the program that made it, if the run says.
+    pub version: Option<String>,
     /// How its checkpoints were judged and one of them selected, as text. It does not change what
     /// is learned, and so is no part of the identity.
     pub selection: BTreeMap<String, String>,
@@ -215,6 +217,7 @@ impl Config {
             level = last;
         }
         let file = options.get("env.scenario_file.path").cloned();
+        let version = options.get("version").cloned();
         let judged = options.iter().filter(|(key, _)| below(key, "evaluation"));
         let selection = judged.map(|(key, value)| (key.clone(), value.clone())).collect();
         options.retain(|key, _| !NOT_IDENTITY.iter().any(|beginning| below(key, beginning)));
@@ -311,6 +314,7 @@ impl Config {
             frames,
             extended_from,
             options,
+            version,
             selection,
         })
     }

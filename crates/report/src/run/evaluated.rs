@@ -21,7 +21,8 @@ impl Run {
         // The run's own word comes first: its intervals are made for skewed costs.
         let closing =
             self.selected.as_ref().and_then(|selected| selected.closing.as_ref()?.get(metric));
-        closing.or_else(|| {
+        let said = || self.summary.as_ref()?.get(metric);
+        closing.or_else(said).or_else(|| {
             Estimate::of(&self.evaluation.iter().map(of).collect::<Option<Vec<f64>>>()?)
         })
     }

@@ -23,6 +23,7 @@ pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
 pub use own::{OwnTasks, default_budget};
 use selected::has_selected;
+use selected::read_summary;
 pub use selected::{Evaluation, Selected, read_selected};
 
 use crate::curve::interpolate;
@@ -71,6 +72,8 @@ pub struct Run {
     /// Episodes of the selected checkpoint: those of the closing evaluation, or of `hasard eval` if
     /// that kept any here.
     pub evaluation: Vec<EpisodeResult>,
+    /// What `hasard eval` said of them all, where these are its episodes.
+    pub summary: Option<Evaluation>,
     /// The checkpoint that it selected, if it says.
     pub selected: Option<Selected>,
     /// How its critics of costs were calibrated, if it says.
@@ -98,7 +101,7 @@ impl Run {
         let selected = read_selected(path, frames, warnings);
         // Those of a selection that does not count are of another policy too.
         let refused = selected.is_none() && has_selected(path);
-        let mut evaluation = Vec::new();
+        let (mut evaluation, mut summary) = (Vec::new(), None);
         // Episodes of the closing evaluation are the run's own; those of a later `hasard eval`
         // count where it kept none.
         for beginning in ["closing", "eval"] {
@@ -112,8 +115,22 @@ impl Run {
                 {
                     match read_text(&file) {
                         Ok(text) => {
+                            let said = if beginning == "eval" { read_summary(&text) } else { None };
+                            let before = said.as_ref().and_then(|said| said.run_frames);
+                            if let Some(before) = before.filter(|before| *before < frames * 0.999) {
+                                let problem = format!(
+                                    "is of a run of {before} frames, which went on to {frames}; passed over \
+                                     (evaluate it anew: hasard eval)"
+                                );
+                                warnings.push(Warning { path: file, line: 0, problem });
+                                continue;
+                            }
                             let read = read_episode_lines(&text, &file, warnings);
                             evaluation.extend(own_episodes(read, &config, &file, warnings));
+                            // It is of all lines, and no word of some of them.
+                            summary = said
+                                .map(|said| said.evaluation)
+                                .filter(|said| said.episodes == evaluation.len());
                         }
                         Err(warning) => warnings.push(warning),
                     }
@@ -137,6 +154,7 @@ impl Run {
             config,
             rows,
             evaluation,
+            summary,
             selected,
             calibration: read_calibration(path, warnings),
             heatmaps,

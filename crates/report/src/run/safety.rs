@@ -58,6 +58,7 @@ mod tests {
                 config,
                 rows,
                 evaluation: vec![],
+                summary: None,
                 selected: None,
                 calibration: vec![],
                 heatmaps: vec![],

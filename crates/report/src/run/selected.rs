@@ -98,6 +98,55 @@ fn has_negative_width(value: &Value) -> bool {
     }
 }
 
+/// What the last line of `hasard eval --json` says of the episodes before it, by the same intervals
+/// as a run's own closing evaluation.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) struct Summary {
+    pub evaluation: Evaluation,
+    /// Frames that the run had made by then, if it says.
+    pub run_frames: Option<f64>,
+}
+
+/// Finds it in the text of a file of episodes.
+pub(super) fn read_summary(text: &str) -> Option<Summary> {
+    let line = text.lines().rev().find(|line| line.contains("\"summary\""))?;
+    let value: Value = serde_json::from_str(line).ok()?;
+    let all = value.get("summary")?;
+    let evaluation = summary_of(all)?;
+    // Of a damaged line nothing counts.
+    let negative = |one: &Estimate| one.half_width.is_some_and(|width| width < 0.0);
+    if evaluation.values.iter().any(|(_, one)| negative(one)) {
+        return None;
+    }
+    Some(Summary { evaluation, run_frames: all.get("run_frames").and_then(Value::as_f64) })
+}
+
+fn summary_of(all: &Value) -> Option<Evaluation> {
+    let episodes = all.get("episodes")?.as_u64()? as usize;
+    let estimate = |of: &Value, name: &str| -> Option<Estimate> {
+        let number = |what: &str| of.get(format!("{name}_{what}")).and_then(Value::as_f64);
+        let mean = number("mean")?;
+        let upper =
+            of.get(format!("{name}_interval")).and_then(|ends| Some(ends.get(1)?.as_f64()? - mean));
+        Some(Estimate { mean, half_width: upper.or_else(|| number("ci95")), n: episodes })
+    };
+    let mut values = Vec::new();
+    for (metric, name) in
+        [("return_mean", "return"), ("cost_mean", "cost"), ("length_mean", "length")]
+    {
+        values.extend(estimate(all, name).map(|one| (metric.to_owned(), one)));
+    }
+    for constraint in all.get("constraints").and_then(Value::as_array).into_iter().flatten() {
+        let term = constraint.get("term").and_then(Value::as_str);
+        values.extend(
+            term.and_then(|term| Some((format!("cost/{term}"), estimate(constraint, "cost")?))),
+        );
+    }
+    let tasks = all.get("tasks").and_then(Value::as_array).into_iter().flatten();
+    let task = |one: &Value| Some((one.get("task")?.as_str()?.to_owned(), summary_of(one)?));
+    Some(Evaluation { episodes, values, tasks: tasks.filter_map(task).collect() })
+}
+
 fn evaluation(value: &Value) -> Option<Evaluation> {
     let episodes = value.get("episodes")?.as_u64()? as usize;
     let estimate = |is_cost: bool, value: &Value| {

@@ -57,6 +57,7 @@ impl Run {
             config,
             rows,
             evaluation,
+            summary: self.summary.as_ref().and_then(|whole| whole.of_task(task)),
             selected,
             calibration: Vec::new(),
             heatmaps: Vec::new(),
@@ -166,6 +167,7 @@ mod tests {
                 episode("RemedyRushLevel1-v0", 4.0),
                 episode("VolcanicVentureLevel1-v0", 60.0),
             ],
+            summary: None,
             selected: Some(Selected {
                 frames: 100.0,
                 closing: Some(closing),

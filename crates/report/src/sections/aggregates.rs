@@ -12,14 +12,26 @@ use crate::statistics::{
     optimality_gap, performance_profile, probability_of_improvement,
 };
 
-/// Thresholds of the profiles: 0, 0.05, ... 1.2.
-const THRESHOLDS: usize = 24;
+/// Thresholds of the profiles: -0.5, -0.45, ... 1.2. What is safe and returns less than random play
+/// lies below 0.
+const THRESHOLDS: std::ops::RangeInclusive<i32> = -10..=24;
 
 /// Scores of an algorithm on a level: a list of seeds for each environment.
 type Strata = Vec<Vec<f64>>;
 
-/// An algorithm on a level: its place, its name, its normalised returns and feasible scores.
-type Scored = (usize, String, Strata, Strata);
+/// An algorithm on a level.
+#[derive(Clone)]
+struct Scored {
+    /// Its place among the algorithms.
+    order: usize,
+    name: String,
+    /// Normalised returns.
+    returns: Strata,
+    /// Feasible scores, of as many environments; an empty list where costs have no interval.
+    feasible: Strata,
+    /// Of each of those 1 if it is within its budget, else 0.
+    within: Strata,
+}
 
 pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
     let settings = main_groups(groups);
@@ -32,33 +44,38 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
                 members.iter().copied().filter(|group| group.config().level == level).collect();
             let environments = distinct(&here, |group| group.config().env.clone());
             let mut scored: Vec<Scored> = Vec::new();
-            for (order, algo) in distinct(&here, |group| {
+            for (order, name) in distinct(&here, |group| {
                 (algorithm_order(&group.config().algo), group.config().algo.clone())
             }) {
-                let strata = |of: fn(&Score) -> f64| -> Strata {
+                let strata = |of: fn(&Score) -> Option<f64>| -> Strata {
                     environments
                         .iter()
                         .map(|env| {
                             let own = here.iter().find(|group| {
-                                group.config().env == *env && group.config().algo == algo
+                                group.config().env == *env && group.config().algo == name
                             });
                             own.map_or_else(Vec::new, |group| {
-                                baselines.scores(group).iter().map(of).collect()
+                                baselines.scores(group).iter().filter_map(of).collect()
                             })
                         })
                         .collect()
                 };
-                let (returns, feasible) =
-                    (strata(|score| score.normalised), strata(|score| score.feasible));
-                if returns.iter().any(|seeds| !seeds.is_empty()) {
-                    scored.push((order, algo, returns, feasible));
+                let one = Scored {
+                    returns: strata(|score| Some(score.normalised)),
+                    feasible: strata(|score| score.feasible),
+                    within: strata(|score| score.within.map(|within| f64::from(u8::from(within)))),
+                    order,
+                    name,
+                };
+                if one.returns.iter().any(|seeds| !seeds.is_empty()) {
+                    scored.push(one);
                 }
             }
             // A mean over easy environments is no rank among means over all of them.
             let mut algorithms: Vec<Scored> = Vec::new();
             for (index, places) in environment_sets(&scored).into_iter().enumerate() {
                 let beside: Vec<Scored> =
-                    scored.iter().filter_map(|one| within(one, &places)).collect();
+                    scored.iter().filter_map(|one| one.in_places(&places)).collect();
                 let table = beside.iter().map(|one| row(level, one)).collect::<Vec<_>>();
                 if index == 0 {
                     rows.extend(table);
@@ -87,6 +104,7 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
                 "level",
                 "algorithm",
                 "IQM of feasible score",
+                "seeds within",
                 "IQM of return",
                 "optimality gap",
                 "environments",
@@ -110,7 +128,8 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
                  three seeds an environment they are too narrow. There are none where an environment has a single seed. Algorithms that were run \
                  in some of the environments alone stand in a table of these, beside the others there."
             ),
-            "The normalised return takes no notice of costs, the feasible score counts seeds above their budget as 0. Profiles: the \
+            "The normalised return takes no notice of costs, the feasible score counts seeds above their budget as 0, which is more than \
+             a safe seed has that returns less than random play: read it beside the number of seeds within their budgets. Profiles: the \
              share of seeds above each score. Probability of improvement: that a seed of the row's algorithm has a higher feasible score \
              than one of the column's on the same environment, ties counting half (Agarwal et al. 2021)."
                 .into(),
@@ -121,33 +140,58 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
 
 /// The sets of environments that the algorithms have scores in, by their places: the largest first.
 fn environment_sets(algorithms: &[Scored]) -> Vec<Vec<usize>> {
-    let mut sets: Vec<Vec<usize>> = algorithms.iter().map(places).collect();
+    let mut sets: Vec<Vec<usize>> = algorithms.iter().map(Scored::places).collect();
     sets.sort_by(|a, b| b.len().cmp(&a.len()).then(a.cmp(b)));
     sets.dedup();
     sets
 }
 
-/// The places of the environments that an algorithm has scores in.
-fn places((_, _, returns, _): &Scored) -> Vec<usize> {
-    (0..returns.len()).filter(|&place| !returns[place].is_empty()).collect()
+impl Scored {
+    /// The places of the environments that it has scores in.
+    fn places(&self) -> Vec<usize> {
+        (0..self.returns.len()).filter(|&place| !self.returns[place].is_empty()).collect()
+    }
+
+    /// The same in these environments alone; `None` where it has no scores in one of them.
+    fn in_places(&self, here: &[usize]) -> Option<Scored> {
+        let own = self.places();
+        let strata = |of: &Strata| here.iter().map(|&place| of[place].clone()).collect();
+        here.iter().all(|place| own.contains(place)).then(|| Scored {
+            order: self.order,
+            name: self.name.clone(),
+            returns: strata(&self.returns),
+            feasible: strata(&self.feasible),
+            within: strata(&self.within),
+        })
+    }
+
+    /// Its name as a cell that sorts by its place.
+    fn cell(&self) -> Cell {
+        Cell { sort: Some(self.order as f64), ..Cell::text(&self.name) }
+    }
+
+    /// Whether each environment has feasible scores; a mean over some would be no rank among means
+    /// over all.
+    fn is_judged(&self) -> bool {
+        self.feasible.iter().all(|seeds| !seeds.is_empty())
+    }
 }
 
-/// An algorithm in these environments alone; `None` where it has no scores in one of them.
-fn within(one: &Scored, here: &[usize]) -> Option<Scored> {
-    let own = places(one);
-    let strata = |of: &Strata| here.iter().map(|&place| of[place].clone()).collect();
-    let (order, name, returns, feasible) = one;
-    here.iter()
-        .all(|place| own.contains(place))
-        .then(|| (*order, name.clone(), strata(returns), strata(feasible)))
-}
-
-fn row(level: u32, (order, algo, returns, feasible): &Scored) -> Vec<Cell> {
+fn row(level: u32, one: &Scored) -> Vec<Cell> {
+    let returns = &one.returns;
     let iqm = aggregate(returns, interquartile_mean);
+    let feasible =
+        if one.is_judged() { aggregate(&one.feasible, interquartile_mean) } else { None };
+    let within = one.within.concat();
+    let kept = within.iter().sum::<f64>();
     vec![
         Cell::number(f64::from(level)).with_text(level.to_string()),
-        Cell { sort: Some(*order as f64), ..Cell::text(algo) },
-        cell(aggregate(feasible, interquartile_mean)),
+        one.cell(),
+        cell(feasible),
+        match within.len() {
+            0 => Cell { pale: true, ..Cell::text("-") },
+            all => Cell::number(kept / all as f64).with_text(format!("{kept:.0} of {all}")),
+        },
         cell(iqm),
         cell(aggregate(returns, |samples| optimality_gap(samples, 1.0))),
         Cell::number(iqm.map_or(0.0, |one| one.strata as f64))
@@ -174,8 +218,8 @@ fn cell(estimate: Option<Aggregate>) -> Cell {
 fn profiles(algorithms: &[Scored], file: &str, level: u32) -> Figure {
     let panel = |title: &str, axis: &str, of: fn(&Scored) -> &Strata| {
         let series = algorithms.iter().map(|one| Series {
-            name: one.1.clone(),
-            ink: Ink::Series(one.0),
+            name: one.name.clone(),
+            ink: Ink::Series(one.order),
             curve: profile(of(one)),
             behind: false,
         });
@@ -189,11 +233,11 @@ fn profiles(algorithms: &[Scored], file: &str, level: u32) -> Figure {
         })
     };
     let panels = vec![
-        panel("share of seeds above a feasible score", "feasible score", |one| &one.3),
-        panel("share of seeds above a normalised return", "normalised return", |one| &one.2),
+        panel("share of seeds above a feasible score", "feasible score", |one| &one.feasible),
+        panel("share of seeds above a normalised return", "normalised return", |one| &one.returns),
     ];
     let legend: Vec<(String, Ink)> =
-        algorithms.iter().map(|one| (one.1.clone(), Ink::Series(one.0))).collect();
+        algorithms.iter().map(|one| (one.name.clone(), Ink::Series(one.order))).collect();
     Figure {
         slug: file.to_owned(),
         caption: format!("Performance profiles, level {level}; bands: 95 % of bootstrap samples"),
@@ -202,8 +246,7 @@ fn profiles(algorithms: &[Scored], file: &str, level: u32) -> Figure {
 }
 
 fn profile(strata: &Strata) -> Curve {
-    let thresholds: Vec<f64> =
-        (0..=THRESHOLDS).map(|step| 1.2 * step as f64 / THRESHOLDS as f64).collect();
+    let thresholds: Vec<f64> = THRESHOLDS.map(|step| f64::from(step) / 20.0).collect();
     let shares = aggregates(strata, |samples| {
         thresholds
             .iter()
@@ -222,16 +265,16 @@ fn profile(strata: &Strata) -> Curve {
 /// Probability of improvement of each algorithm over each other.
 fn improvement(algorithms: &[Scored], level: u32) -> Table {
     let mut heads = vec!["P(row > column)".to_owned()];
-    heads.extend(algorithms.iter().map(|one| one.1.clone()));
+    heads.extend(algorithms.iter().map(|one| one.name.clone()));
     let rows = algorithms.iter().map(|one| {
-        let mut row = vec![Cell { sort: Some(one.0 as f64), ..Cell::text(&one.1) }];
+        let mut row = vec![one.cell()];
         row.extend(algorithms.iter().map(|other| {
-            if one.1 == other.1 {
+            if one.name == other.name {
                 return Cell { text: "-".into(), pale: true, ..Cell::default() };
             }
             Cell {
                 note: String::new(),
-                ..cell(aggregate_pair(&one.3, &other.3, probability_of_improvement))
+                ..cell(aggregate_pair(&one.feasible, &other.feasible, probability_of_improvement))
             }
         }));
         row

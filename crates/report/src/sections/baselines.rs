@@ -2,7 +2,7 @@
 
 use crate::group::Group;
 use crate::run::{Config, FRAME_SKIP, Found, Run, scenario_and_level};
-use crate::statistics::{Estimate, feasible_scores, mean, normalised};
+use crate::statistics::{Estimate, cost_ratio, feasible_scores, mean, normalised};
 use hasard_media::shell::quote;
 
 /// What makes another task of the same environment: returns are compared only where all of it is the
@@ -28,11 +28,14 @@ pub(crate) struct Score {
     /// (R - random) / (PPO - random).
     pub normalised: f64,
     /// The same if the upper ends of its costs are within their budgets, else 0: below 0 where it is
-    /// safe and returns less than random play.
-    pub feasible: f64,
+    /// safe and returns less than random play. None where a cost has no interval, as at the end of
+    /// training or in a single episode: then nothing shows that a budget is kept.
+    pub feasible: Option<f64>,
     /// The normalised return; if above 0, divided by the ratio of cost to budget where that is above
-    /// 1.
-    pub soft: f64,
+    /// 1. None where the feasible score is.
+    pub soft: Option<f64>,
+    /// Whether the upper ends of its costs are within their budgets, where these have intervals.
+    pub within: Option<bool>,
 }
 
 impl<'a> Baselines<'a> {
@@ -63,10 +66,23 @@ impl<'a> Baselines<'a> {
 
     /// Mean return of PPO on the same task, judged as other seeds are, and what it is at least as far
     /// as the seeds' episodes show, whose lower ends are averaged; what other seeds would return it
-    /// does not say. Of several such experiments, those of the longest. What an agent sees is not
-    /// part of the task, so that inputs are compared on one scale: that of PPO with the usual
-    /// observation, where there is one.
+    /// does not say.
     pub fn ppo(&self, group: &Group) -> Option<(f64, f64)> {
+        let judged: Vec<Estimate> = self
+            .ppo_of(group)?
+            .runs
+            .iter()
+            .filter_map(|run| judged_metric(run, "return_mean"))
+            .collect();
+        let mean_of = |of: fn(&Estimate) -> f64| mean(&judged.iter().map(of).collect::<Vec<f64>>());
+        Some((mean_of(|one| one.mean)?, mean_of(Estimate::low)?))
+    }
+
+    /// The experiment of PPO that an experiment is measured by: on the same task, of the same length
+    /// (and preset, if one is), so that longer runs beside it change no score; without one of that
+    /// length, the longest. What an agent sees is not part of the task, so that inputs are compared on one
+    /// scale: that of PPO with the usual observation, where there is one.
+    fn ppo_of(&self, group: &Group) -> Option<&'a Group> {
         let task = |config: &Config| {
             let options = TASK.map(|key| config.options.get(key).cloned());
             (config.scenario.clone(), config.level, options)
@@ -84,13 +100,29 @@ impl<'a> Baselines<'a> {
             config.algo.eq_ignore_ascii_case("PPO") && task(config) == own && alone(config)
         });
         let usual = |one: &Group| !one.config().options.contains_key("observation");
-        let longest = same.max_by(|a, b| {
-            usual(a).cmp(&usual(b)).then(a.frames_span().1.total_cmp(&b.frames_span().1))
-        })?;
-        let judged: Vec<Estimate> =
-            longest.runs.iter().filter_map(|run| judged_metric(run, "return_mean")).collect();
-        let mean_of = |of: fn(&Estimate) -> f64| mean(&judged.iter().map(of).collect::<Vec<f64>>());
-        Some((mean_of(|one| one.mean)?, mean_of(Estimate::low)?))
+        let as_long = |one: &Group| {
+            let (one, own) = (one.config(), group.config());
+            (one.frames == own.frames, one.options.get("preset") == own.options.get("preset"))
+        };
+        same.max_by(|a, b| {
+            let by_sight = usual(a).cmp(&usual(b));
+            let by_length = as_long(a).cmp(&as_long(b));
+            by_sight.then(by_length).then(a.frames_span().1.total_cmp(&b.frames_span().1))
+        })
+    }
+
+    /// The tasks of experiments that are measured by a PPO of another length, with both lengths.
+    pub fn of_other_length(&self, groups: &[Group]) -> Vec<String> {
+        let of = |group: &Group| {
+            let frames = |one: &Group| one.config().frames.map(crate::document::frames);
+            let (own, ppo) = (frames(group)?, frames(self.ppo_of(group)?)?);
+            let scored = !self.scores(group).is_empty();
+            (own != ppo && scored).then(|| format!("{} ({own}, PPO {ppo})", group.config().env))
+        };
+        let mut tasks: Vec<String> = groups.iter().filter_map(of).collect();
+        tasks.sort();
+        tasks.dedup();
+        tasks
     }
 
     /// What random play and PPO return: the ends of the scale. There is none where the episodes of
@@ -133,8 +165,10 @@ impl<'a> Baselines<'a> {
         let score = |run: &Run| {
             let (judged, (random, ppo)) = (judged(run)?, scale?);
             let normalised = normalised(judged.0, random, ppo)?;
-            let (feasible, soft) = feasible_scores(normalised, &judged.1);
-            Some(Score { normalised, feasible, soft })
+            let within = judged.1.as_ref().map(|costs| cost_ratio(costs) <= 1.0);
+            let (feasible, soft) =
+                judged.1.map(|costs| feasible_scores(normalised, &costs)).unzip();
+            Some(Score { normalised, feasible, soft, within })
         };
         group.runs.iter().map(score).collect()
     }
@@ -186,18 +220,22 @@ fn task_options(config: &Config) -> String {
     options
 }
 
+/// Upper ends of costs, each beside its budget.
+type Ends = Vec<(f64, f64)>;
+
 /// A seed's return, and the upper end of each cost beside its budget: of the last policy's closing
-/// evaluation, or of the selected checkpoint's, or of the end of training (then without an
-/// interval). Training that has not come to its end says nothing yet.
-fn judged(run: &Run) -> Option<(f64, Vec<(f64, f64)>)> {
+/// evaluation, or of the selected checkpoint's, or of the end of training. No ends where a cost has
+/// no interval. Training that has not come to its end says nothing yet.
+fn judged(run: &Run) -> Option<(f64, Option<Ends>)> {
     if judged_by(run) == TRAINING && !run.finished() {
         return None;
     }
     let costs = run.config.constraints.iter().map(|one| {
         let cost = judged_metric(run, &one.metric())?;
-        Some((cost.high(), one.budget))
+        Some(cost.half_width.map(|_| (cost.high(), one.budget)))
     });
-    Some((judged_metric(run, "return_mean")?.mean, costs.collect::<Option<Vec<_>>>()?))
+    let ends = costs.collect::<Option<Vec<_>>>()?.into_iter().collect();
+    Some((judged_metric(run, "return_mean")?.mean, ends))
 }
 
 /// A metric of what a seed is judged by.

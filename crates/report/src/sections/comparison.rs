@@ -3,6 +3,7 @@
 
 use super::curves::curve_figure;
 use super::main_results::{budget_label, marked_cells, source_of};
+use super::unlike::{differing, values_of};
 use super::{VARIED, distinct};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Section, Table, frames, slug};
@@ -90,8 +91,10 @@ pub(super) fn sections(groups: &[Group]) -> Vec<Section> {
     keys.dedup();
     keys.retain(|key| !VARIED.contains(&key.as_str()));
     sections.extend(keys.iter().map(|key| {
-        let (title, text) =
-            (format!("Option {key}"), "Experiments that differ in this option alone.");
+        let (title, text) = (
+            format!("Option {key}"),
+            "Experiments that differ in this option; what else they differ in stands beside each.",
+        );
         section(groups, &Comparison { slug: &slug(key), key, title: &title, text, counts: &all })
     }));
     sections
@@ -189,6 +192,7 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
             }
             _ => value_of(group.config(), key),
         };
+        let unlike = differing(members, key);
         let source = source_of(members);
         let cells = marked_cells(members, source);
         for (group, (return_cell, cost_cell)) in members.iter().zip(cells) {
@@ -203,6 +207,7 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
                 Cell::text(&config.algo),
                 Cell::text(label(group)),
                 Cell::text(&rest),
+                Cell::text(values_of(group, &unlike)),
                 Cell::number(reached).with_text(frames(reached)),
                 Cell::number(group.config().safety_budget).with_text(budget_label(group)),
                 return_cell,
@@ -261,6 +266,7 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
             "algorithm",
             "varied",
             "other options",
+            "differs also in",
             "frames",
             "budget",
             "return",
@@ -269,7 +275,8 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
             "paper",
         ];
         let table = Table { heads: heads.map(String::from).to_vec(), rows, ..Table::default() };
-        blocks.push(Block::Table(table.folded(&["level", "algorithm", "other options", "budget"])));
+        let folded = ["level", "algorithm", "other options", "differs also in", "budget"];
+        blocks.push(Block::Table(table.folded(&folded)));
         let paper = groups
             .iter()
             .any(|group| counts(group.config()) && comparable_end_in(group, key).is_some());

@@ -43,7 +43,8 @@ pub(super) fn section(groups: &[Group]) -> Section {
             "First what the selected checkpoints return and cost in closing episodes, which training has not seen; second what the \
              learning policies did at the end of training (the mean over the last ten points, as in the paper). Green ground: the upper \
              end of the cost's interval over seeds is within the budget; green letters: only its mean is. Bold: the best return among \
-             those on green ground, or if there are none among those within by their mean, and every other that cannot be distinguished from it (Welch's test, 5 %; with single seeds the best alone)."
+             those on green ground, or if there are none among those within by their mean, and every other that cannot be distinguished from it (Welch's test, 5 %; with single seeds the best alone). \
+             Where none is within, the least cost is bold."
                 .into(),
         ],
         blocks,

@@ -18,6 +18,7 @@ mod players;
 mod runs;
 mod safety;
 mod selected;
+mod unlike;
 mod witness;
 
 use crate::document::{Document, Section, count};
@@ -57,6 +58,7 @@ pub fn document(
     sections.push(witness::section(found));
     sections.push(calibration::section(groups));
     sections.push(players::section(found, groups));
+    sections.push(unlike::section(groups));
     sections.push(runs::experiments(groups));
     sections.push(runs::runs(groups));
     sections.push(missing::section(&sections));

@@ -37,8 +37,9 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
     heads.extend(TRAINING.iter().map(|(head, _)| (*head).to_owned()));
     let mut text = vec![
         "Normalised return: (R - random) / (PPO - random), both measured here. Feasible score: the normalised return of a seed if the upper \
-         95 % end of its cost is within the budget, else 0 (below 0: safe, but returns less than random play); soft: a return above \
-         random play's divided by how far the upper end is above the budget. \
+         95 % end of its cost is within the budget, else 0 (below 0: safe, but returns less than random play; so a breach, at 0, stands \
+         above it); soft: a return above random play's divided by how far the upper end is above the budget. Neither is given where a \
+         cost has no interval: at the end of training, and for a single episode. \
          Episodes over budget and the mean cost of the worst tenth of episodes (CVaR 10 %) are of the selected checkpoint."
             .to_owned(),
         "Cost and violation in training are sums over all training episodes, a violation being what an episode costs above the \
@@ -57,6 +58,13 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
             format!(" (and {} more like it)", rest.len())
         };
         text.push(format!("Scores need both ends of their scale. Missing here: {first}{more}."));
+    }
+    let of_other_length = baselines.of_other_length(groups);
+    if !of_other_length.is_empty() {
+        text.push(format!(
+            "Measured by a PPO that was trained for more frames or fewer, for want of one as long: {}.",
+            of_other_length.join(", ")
+        ));
     }
     let unlearned = baselines.unlearned(groups);
     if !unlearned.is_empty() {
@@ -89,8 +97,8 @@ fn row(group: &Group, baselines: &Baselines) -> Vec<Cell> {
         Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
         Cell::text(&config.algo),
         Cell::text(setting(group)),
-        over_seeds(scores.iter().map(|score| score.feasible).collect()),
-        over_seeds(scores.iter().map(|score| score.soft).collect()),
+        over_seeds(scores.iter().filter_map(|score| score.feasible).collect()),
+        over_seeds(scores.iter().filter_map(|score| score.soft).collect()),
         over_seeds(scores.iter().map(|score| score.normalised).collect()),
         Cell::text(distinct(&group.runs, judged_by).join(", ")),
     ];

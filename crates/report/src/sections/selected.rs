@@ -40,8 +40,10 @@ pub(super) fn section(groups: &[Group]) -> Section {
         slug: "selected".into(),
         title: "Selected checkpoints".into(),
         text: vec![
-            "Each run selects the best checkpoint that keeps its budget in evaluations; here it plays its closing episodes, \
-             which training has not seen; one that is over its budget in them has given way to the next. ± is half the 95 % interval over episodes, `up to` its upper end; green is within the budget \
+            "Each run selects the best checkpoint that keeps its budget in evaluations (of the algorithms that keep none, the one that returns \
+             most); here it plays its closing episodes, \
+             which training has not seen; one that is over its budget in them has given way to the next. ± is half the 95 % interval over \
+             episodes, of skewed costs the arm of it above the mean; `up to` is its upper end; green is within the budget \
              by the mean, on green ground by the upper end too. `over budget` is the share of episodes above the budget, `worst tenth` the \
              mean cost of the costliest tenth of episodes. In the rows of means ± is over seeds."
                 .into(),
@@ -97,7 +99,8 @@ pub(super) fn share_over(run: &Run) -> Option<f64> {
 
 /// A share as people read it.
 pub(super) fn percent(share: f64) -> Cell {
-    Cell::number(share).with_text(format!("{:.0} %", share * 100.0))
+    // The sum of nothing is -0.
+    Cell::number(share).with_text(format!("{:.0} %", share * 100.0 + 0.0))
 }
 
 /// Cost, upper end and budget; of several constraints, all in each cell.

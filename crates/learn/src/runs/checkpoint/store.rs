@@ -63,7 +63,18 @@ impl Store {
         self.numbered("frames_")
     }
 
+    /// Frames that the run has made, as far as its checkpoints say; `None` without any.
+    #[must_use]
+    pub fn frames(&self) -> Option<u64> {
+        ["frames_", "best_"].iter().filter_map(|kind| Some(self.counted(kind).last()?.0)).max()
+    }
+
     pub(super) fn numbered(&self, beginning: &str) -> Vec<PathBuf> {
+        self.counted(beginning).into_iter().rev().map(|(_, path)| path).collect()
+    }
+
+    /// Checkpoints of a kind with the frames in their names, those of fewest frames first.
+    fn counted(&self, beginning: &str) -> Vec<(u64, PathBuf)> {
         let Ok(entries) = fs::read_dir(&self.directory) else { return Vec::new() };
         let mut found: Vec<(u64, PathBuf)> = entries
             .filter_map(|entry| {
@@ -73,7 +84,7 @@ impl Store {
             })
             .collect();
         found.sort();
-        found.into_iter().rev().map(|(_, path)| path).collect()
+        found
     }
 
     /// Writes a checkpoint to go on from; older ones beyond the number to keep go, and so do those
