@@ -28,7 +28,7 @@ from hasard_rs.errors import (
     UnknownEnvironment,
     WorldPanicked,
 )
-from hasard_rs.events import Cause, Event, Thing
+from hasard_rs.events import Cause, Event, Events, Thing
 from hasard_rs.own import OwnScenario, is_file
 from hasard_rs.registry import LEVELS, CostTerm, Scenario, Spec, bare, ids, register_all, register_environment, spec
 
@@ -43,12 +43,13 @@ else:
     register_all()
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Iterable, Sequence
 
     import gymnasium
 
 
-def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
+def make(env_id: str | os.PathLike[str], **kwargs: Any) -> gymnasium.Env[Any, Any]:
     """An environment in a `CostWrapper`, as `gymnasium.make` makes it.
 
     Args:
@@ -68,10 +69,12 @@ def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
     if _arguments.is_whole(kwargs.get("max_episode_steps")):
         # Gymnasium takes no other integers than Python's.
         kwargs["max_episode_steps"] = int(kwargs["max_episode_steps"])
-    return CostWrapper(_gymnasium.make(f"hasard/{_known(env_id)}", **kwargs))
+    made = _gymnasium.make(f"hasard/{_known(env_id)}", **kwargs)
+    # The environment itself ends episodes at their limit. Gymnasium's wrapper would call the last step cut off even where it is an end.
+    return CostWrapper(made.env if isinstance(made, _gymnasium.wrappers.TimeLimit) else made)
 
 
-def make_vec(env_id: str | Sequence[str], num_envs: int = 1, **kwargs: Any) -> VectorEnv:
+def make_vec(env_id: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], num_envs: int = 1, **kwargs: Any) -> VectorEnv:
     """A native vector environment, as `gymnasium.make_vec` makes it.
 
     Args:
@@ -104,16 +107,16 @@ def make_vec(env_id: str | Sequence[str], num_envs: int = 1, **kwargs: Any) -> V
     return cast("VectorEnv", made)
 
 
-def _task(env_id: str, given: Iterable[str] = ()) -> dict[str, Any]:
+def _task(env_id: str | os.PathLike[str], given: Iterable[str] = ()) -> dict[str, Any]:
     """What makes an environment: scenario, level, and the text of a task of one's own; none of them may be among the arguments `given`."""
     _arguments.refuse_task(given)
     return dict(_gymnasium.spec(f"hasard/{_known(env_id)}").kwargs)
 
 
-def _known(env_id: str) -> str:
+def _known(env_id: str | os.PathLike[str]) -> str:
     """The bare id, if it is one; else the error that names the nearest."""
     known = spec(env_id)
-    return bare(known.id if is_file(env_id) else env_id)
+    return bare(known.id if is_file(env_id) else cast("str", env_id))
 
 
 __all__ = [
@@ -125,6 +128,7 @@ __all__ = [
     "CostTerm",
     "Env",
     "Event",
+    "Events",
     "HasardError",
     "InvalidAction",
     "InvalidMap",

@@ -109,7 +109,9 @@ def training_words(
     one setting by two names that contradict each other."""
     tasks = env_id if isinstance(env_id, (list, tuple)) else [env_id]
     words = [",".join(bare(plain(task)) for task in tasks), "--quiet"]
-    names = {"algorithm": algorithm, "preset": preset, "out": None if out is None else os.fspath(out), **flags}
+    if set is not None and not isinstance(set, Mapping):
+        raise InvalidOption(f"set cannot be {set!r:.60}; it must be a dict of settings by name, such as {{'learning.rate': 0.0003}}")
+    names = {"algorithm": algorithm, "preset": preset, "out": None if out is None else os.fsdecode(out), **flags}
     given: dict[str, tuple[str, list[str]]] = {}
     for other, value in names.items():
         # `async` is a word of Python's, so that `async_` stands for it.
@@ -272,6 +274,8 @@ class Agent:
         actions, deltas, after = self._trained.act(observations, state.memory, state.costs, state.over, state.terms)
         chosen: Any = actions
         if deltas.shape[1]:
+            # What the network draws may lie beyond what a player can do.
+            deltas = np.clip(deltas, -1.0, 1.0)
             chosen = {"buttons": actions[0], "deltas": deltas[0]} if single else {"buttons": actions, "deltas": deltas}
         elif single:
             chosen = actions[0]
@@ -289,7 +293,13 @@ class Agent:
 
         Returns:
             The state for the next `act`.
+
+        Raises:
+            TypeError for costs or over that are None.
         """
+        for name, value in (("costs", costs), ("over", over)):
+            if value is None:
+                raise TypeError(f"{name} must be an array with an entry for each lane, got None")
         terms = None if cost_terms is None else np.atleast_2d(cost_terms).astype(float).tolist()
         return _State(state.memory, np.atleast_1d(costs).astype(float).tolist(), np.atleast_1d(over).astype(bool).tolist(), terms)
 
@@ -311,7 +321,8 @@ class Agent:
 
         Args:
             episodes: how many.
-            seed: of the first.
+            seed: of the first episode, one more for each of the next: what `info["episode_seed"]` says of an episode, not what `reset(seed=...)` takes,
+                which begins a stream of episodes.
             env_id: another environment that has the agent's buttons, such as another level: an id, or a task's file.
                 It and `rules` hold the agent to that task's own budget; None: the agent's own.
             rules: "paper", "released" or "tables"; None: the agent's own.
@@ -369,7 +380,8 @@ def report(runs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], out:
         HasardError, with the program's line of what went wrong.
     """
     several = [runs] if isinstance(runs, (str, os.PathLike)) else runs
-    _run(["report", *[os.fspath(run) for run in several], "-o", os.fspath(out)])
+    # Paths may begin with a dash.
+    _run(["report", f"--out={os.fspath(out)}", "--", *[os.fspath(run) for run in several]])
     return Path(out)
 
 

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from hasard_rs.events import Events
+
 Infos = dict[str, Any]
 """Columns by name; a dict of columns where a key holds several."""
 
@@ -31,9 +33,9 @@ def add(infos: Infos, info: dict[str, Any], index: int, count: int) -> None:
         if isinstance(value, dict):
             add(infos.setdefault(key, {}), value, index, count)
         else:
-            value = np.asarray(value)
-            # Rows of their own number, such as events, have no common shape.
-            several = value.dtype.names is not None
+            # Events are as many as they are in each lane, and have no common shape.
+            several = isinstance(value, Events)
+            value = value if several else np.asarray(value)
             column = infos.setdefault(key, np.full(count, None, object) if several else np.zeros((count, *value.shape), value.dtype))
             column[index] = value
         infos.setdefault(f"_{key}", np.zeros(count, np.bool_))[index] = True

@@ -64,8 +64,11 @@ class Shared:
 
     @spec.setter
     def spec(self, given: Any) -> None:
-        """Takes what Gymnasium has `given`, its values as JSON can hold them. Raises InvalidOption for a limit of steps that cannot be."""
+        """Takes what Gymnasium has `given`, its values as JSON can hold them. Raises InvalidOption for a limit of steps that cannot be, TypeError for
+        a scenario or level that is not the id's."""
         if given is not None:
+            if given.id.startswith("hasard/") and scenario_and_level(given.id) != (self.scenario_name, self.level):
+                raise TypeError(f"scenario and level are bound by the id; {given.id} cannot be {self.scenario_name} {self.level}: ask for that id")
             self._limit(_asked_limit(sys._getframe(1), given))
             given = copy.copy(given)
             if given.entry_point == f"{type(self).__module__}:entry":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import secrets
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -15,7 +16,7 @@ from hasard_rs import arguments as _arguments
 from hasard_rs._core import Worlds
 from hasard_rs.common import Shared, frame_size
 from hasard_rs.infos import Infos, row, summary
-from hasard_rs.own import scenario_and_level
+from hasard_rs.own import names_kept, scenario_and_level
 from hasard_rs.spaces import action_format
 from hasard_rs.wrappers.drawable import Drawable
 
@@ -42,7 +43,7 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
             render_mode (None): "rgb_array" or "depth_array". render_resolution (None): of `render`, if other than resolution.
             seed (None): of the first reset without one; 64 bits of the operating system's if None.
             infos ("cost"): "full" adds "cost_terms" (float64 [k]), "position" (int32 [2], map units) and "episode_seed" (uint64); "events" adds
-                to those "events", what happened in the step: a structured array of tic, kind (`Event`), what and by (`Thing`), player, cause
+                to those "events", what happened in the step: `Events`, used as a structured array of tic, kind (`Event`), what and by (`Thing`), player, cause
                 (`Cause`), x, y (map units) and amount, -1 where there is none.
             env_stats (False): adds "env_stats", a dict of floats by name.
             safety_budget (None): an attribute, without effect on the world.
@@ -67,9 +68,10 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
         self._build(arguments)
 
     def _build(self, arguments: dict[str, Any]) -> None:
-        given = _arguments.read(arguments, vector=False)
-        self._arguments, self._given = arguments, given
-        self._worlds = Worlds(given.env_id, 1, num_threads=0, autoreset_mode="Disabled", statistics=given.env_stats, **given.world)
+        with names_kept(arguments):
+            given = _arguments.read(arguments, vector=False)
+            self._arguments, self._given = arguments, given
+            self._worlds = Worlds(given.env_id, 1, num_threads=0, autoreset_mode="Disabled", statistics=given.env_stats, **given.world)
         self._format = action_format(given.action_format, self._worlds.nvec, self._worlds.num_deltas, given.delta_bins)
         self._infos = Infos(self._worlds, scenario_and_level(given.env_id)[0], given.infos, given.env_stats)
         self.action_space = self._format.space
@@ -144,7 +146,7 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
         kind = "rgb" if self.render_mode == "rgb_array" else "depth"
         return self._worlds.render(0, kind, frame_size(self._worlds, self._given))
 
-    def picture(self, kind: str = "rgb", resolution: str | tuple[int, int] | None = None) -> np.ndarray:
+    def picture(self, kind: str = "rgb", resolution: str | Sequence[int] | None = None) -> np.ndarray:
         """Draws the present, whatever `render_mode` is; the episode goes on unchanged.
 
         Args:
@@ -157,7 +159,8 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
         Raises:
             InvalidOption for another kind or size.
         """
-        return self._worlds.render(0, kind, resolution or frame_size(self._worlds, replace(self._given, render_resolution=None)))
+        own = frame_size(self._worlds, replace(self._given, render_resolution=None))
+        return self._worlds.render(0, kind, own if resolution is None else resolution)
 
     def state_hash(self) -> int:
         """Returns a fingerprint (64 bits) of everything that the future depends on; the same on every platform."""

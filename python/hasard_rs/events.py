@@ -1,8 +1,53 @@
-"""The numbers in an event: what happened, to which thing, and what did it. With `infos="events"` each step's info has an array of them."""
+"""The numbers in an event: what happened, to which thing, and what did it. With `infos="events"` each step's info has them all."""
 
 from __future__ import annotations
 
 import enum
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+
+class Events:
+    """What happened in one step of one environment: a structured array, `array`, and all that an array has.
+
+    It is no array itself because Gymnasium's batches put arrays of all environments into one, in which those of different lengths have no place.
+    Of anything else they keep one an environment.
+    """
+
+    __slots__ = ("array",)
+
+    def __init__(self, array: np.ndarray) -> None:
+        self.array = array
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.array, name)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.array(self.array, dtype=dtype, copy=bool(copy)) if copy else np.asarray(self.array, dtype=dtype)
+
+    def __getitem__(self, key: Any) -> Any:
+        return self.array[key]
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self.array)
+
+    def __repr__(self) -> str:
+        return f"Events({self.array!r})"
+
+    def __eq__(self, other: object) -> Any:
+        return self.array == (other.array if isinstance(other, Events) else other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Events, (self.array,)
 
 
 class Event(enum.IntEnum):

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import zlib
 from typing import Any
 
 import numpy as np
 
 from hasard_rs import _core
+from hasard_rs.errors import InvalidOption
+from hasard_rs.events import Events
 
 
 class Infos:
@@ -48,13 +51,17 @@ class Infos:
         return columns
 
     def save(self) -> bytes:
-        """Returns where the worlds are, and what their running episodes have cost so far."""
-        return self.worlds.save() + self.cost.astype("<f8").tobytes()
+        """Returns where the worlds are, what their running episodes have cost so far, and a checksum of both."""
+        state: bytes = self.worlds.save() + self.cost.astype("<f8").tobytes()
+        return state + _checksum(state)
 
     def load(self, state: Any) -> Any:
         """Brings the worlds and their costs to where `state` was saved. Returns the batch; raises InvalidOption, TypeError for what is no bytes."""
         if not isinstance(state, bytes):
             raise TypeError(f"a saved moment must be bytes, got {type(state).__name__}")
+        state, checksum = state[:-4], state[-4:]
+        if checksum != _checksum(state):
+            raise InvalidOption("the saved moment is spoiled, or of another version: its checksum is another; save it anew")
         end = max(0, len(state) - self.cost.nbytes)
         batch = self.worlds.load(state[:end])
         self.cost[:] = np.frombuffer(state, "<f8", offset=end)
@@ -85,12 +92,16 @@ class Infos:
         return {name: float(column[0]) for name, column in self._stats(np.array([cost]), statistics).items()}
 
 
+def _checksum(state: bytes) -> bytes:
+    return zlib.crc32(state).to_bytes(4, "little")
+
+
 def _by_lane(batch: Any) -> Any:
-    """The events of each row, an array each, as one column of objects."""
+    """The events of each row as one column of objects."""
     column = np.empty(len(batch.lanes), dtype=object)
     offsets = batch.event_offsets.tolist()
     for index, (begin, end) in enumerate(zip(offsets, offsets[1:], strict=False)):
-        column[index] = batch.events[begin:end]
+        column[index] = Events(batch.events[begin:end])
     return column
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -65,9 +67,11 @@ def from_text(text: str, path: str = "scenario.toml") -> OwnScenario:
         import gymnasium
     except ImportError:  # Worlds works without.
         return OwnScenario(path, text, ids)
+    name = scenario_and_level(ids[0])[0]
+    # A scenario of that name may have had other levels.
+    for former in [known for known, spec in gymnasium.registry.items() if _file_of(spec) and spec.kwargs["scenario"] == name]:
+        del gymnasium.registry[former]
     for index, env_id in enumerate(ids):
-        name = scenario_and_level(env_id)[0]
-        gymnasium.registry.pop(env_id, None)
         gymnasium.register(
             env_id,
             entry_point="hasard_rs.env:entry",
@@ -78,6 +82,37 @@ def from_text(text: str, path: str = "scenario.toml") -> OwnScenario:
             disable_env_checker=True,
         )
     return OwnScenario(path, text, ids)
+
+
+def _file_of(spec: Any) -> Any:
+    """The path and text of an environment's file, if Gymnasium's `spec` is of one; else None."""
+    return spec.kwargs.get("scenario_file") if spec.kwargs.get("scenario") else None
+
+
+@contextmanager
+def names_kept(arguments: dict[str, Any]) -> Iterator[None]:
+    """While an environment is made from its `arguments`, by a copy or a pickle too, its own text goes by its name; afterwards the last one that
+    was made known by that name does again."""
+    tasks = arguments.get("tasks") or [arguments]
+    own = {task["scenario"]: task["scenario_file"] for task in tasks if task.get("scenario_file") and task.get("scenario")}
+    if not own:
+        yield
+        return
+    try:
+        import gymnasium
+
+        known = {spec.kwargs["scenario"]: _file_of(spec) for spec in gymnasium.registry.values() if _file_of(spec)}
+    except ImportError:
+        known = {}
+    try:
+        yield
+    finally:
+        for name, (path, text) in own.items():
+            if name in known and known[name][1] != text:
+                path, text = known[name]
+                _core.register_scenario(path, text)
+            elif name not in known:
+                from_text(text, path)
 
 
 class _Text(str):

@@ -12,7 +12,8 @@ from typing import Any
 
 import gymnasium
 
-from hasard_rs.arguments import over, refuse_task
+from hasard_rs import _core
+from hasard_rs.arguments import is_whole, over, refuse_task
 from hasard_rs.env import Env
 from hasard_rs.registry import LEVELS, Scenario, bare
 from hasard_rs.wrappers.cost import CostPenalty, CostWrapper
@@ -111,9 +112,13 @@ entry.metadata = {**DoomEnv.metadata, "render_modes": [*DoomEnv.metadata["render
 
 
 def register_environment(scenario: str | Scenario, level: int) -> None:
-    """Registers one bare id, of a scenario (a `Scenario` or its value) and a level (1 to 3); nothing happens if it is registered."""
+    """Registers one bare id, of a scenario (a `Scenario` or its value) and a level (1 to 3); nothing happens if it is registered.
+
+    Raises UnknownEnvironment, which names the nearest id.
+    """
     name = scenario.value if isinstance(scenario, Scenario) else scenario
     env_id = f"{name}Level{level}-v0"
+    _core.describe(env_id)
     if env_id not in gymnasium.registry:
         gymnasium.register(
             env_id, entry_point="hasard_rs.published:entry", kwargs={"scenario": name, "level": level}, disable_env_checker=True
@@ -123,6 +128,10 @@ def register_environment(scenario: str | Scenario, level: int) -> None:
 def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
     """Returns an environment by its bare env_id, in a `CostWrapper`; kwargs as of `DoomEnv`. Raises what `hasard_rs.make` does."""
     refuse_task(kwargs)
+    _core.describe(bare(env_id))
+    if is_whole(kwargs.get("max_episode_steps")):
+        # Gymnasium takes no other integers than Python's.
+        kwargs["max_episode_steps"] = int(kwargs["max_episode_steps"])
     return CostWrapper(gymnasium.make(bare(env_id), **kwargs))
 
 

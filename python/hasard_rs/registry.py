@@ -6,7 +6,7 @@ import enum
 import importlib
 import os
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 from hasard_rs import _core
 from hasard_rs.own import OwnScenario, from_dict, from_file, is_file, opened
@@ -79,7 +79,7 @@ def bare(env_id: str) -> str:
     return rest.removeprefix("hasard/")
 
 
-def spec(env_id: str) -> Spec:
+def spec(env_id: str | os.PathLike[str]) -> Spec:
     """What is known of an environment without making it.
 
     Args:
@@ -93,7 +93,7 @@ def spec(env_id: str) -> Spec:
     """
     if is_file(env_id):
         env_id = opened(env_id)
-    known = _core.describe(bare(env_id))
+    known = _core.describe(bare(cast("str", env_id)))
     return Spec(
         id=f"hasard/{known['id']}",
         scenario=known["scenario"],

@@ -124,11 +124,17 @@ class HasardVectorEnv:
         return infos
 
     def seed(self, seed: Any = None) -> list[Any]:
-        """Keeps the seed of the next reset, an int (lane i's is seed + i) or a list of one a lane. Returns one a lane."""
+        """Keeps the seed of the next reset, an int (lane i's is seed + i) or a list of one a lane. Returns one a lane. Raises ValueError
+        for seeds of another number."""
+        seeds: list[Any] = [None] * self.env_num
+        if _arguments.is_number(seed):
+            seeds = [int(seed) + lane for lane in range(self.env_num)]
+        elif seed is not None:
+            seeds = list(seed)
+            if len(seeds) != self.env_num or not all(_arguments.is_whole(one) for one in seeds):
+                raise ValueError(f"seed must be a whole number, or one for each of {self.env_num} lanes, got {seed!r:.60}")
         self._seeds = seed
-        if seed is None:
-            return [None] * self.env_num
-        return [int(seed) + lane for lane in range(self.env_num)] if _arguments.is_number(seed) else list(seed)
+        return seeds
 
     def render(self, **kwargs: Any) -> list[np.ndarray]:
         """Returns a picture a lane, uint8 [120, 160, 3]; kwargs are ignored."""

@@ -16,7 +16,7 @@ from hasard_rs._core import Batch, Worlds
 from hasard_rs.common import Shared, frame_size
 from hasard_rs.errors import InvalidOption, OutOfTurn
 from hasard_rs.infos import Infos, row, summary
-from hasard_rs.own import scenario_and_level
+from hasard_rs.own import names_kept, scenario_and_level
 from hasard_rs.spaces import action_format
 from hasard_rs.turns import Result, Turns
 from hasard_rs.wrappers.drawable import coloured
@@ -78,17 +78,24 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         if AutoresetMode is None:
             raise ImportError("VectorEnv needs Gymnasium 1.1 or newer: pip install -U gymnasium; Env and hasard_rs.Worlds work with older ones")
         self.closed = False
+        with names_kept(arguments):
+            self._build(arguments, num_envs, num_threads, autoreset_mode, batch_size, copy)
+
+    def _build(self, arguments: dict[str, Any], num_envs: int, num_threads: int | None, autoreset_mode: Any, batch_size: int, copy: bool) -> None:
         given = _arguments.read(arguments, vector=True)
         _arguments.check_no_bools({"num_envs": num_envs, "num_threads": num_threads})
         if not isinstance(copy, (bool, np.bool_)):
             raise InvalidOption(f"copy cannot be {copy!r}; it must be True or False")
         self._arguments = {**arguments, "num_envs": num_envs, "num_threads": num_threads, "batch_size": batch_size, "copy": copy}
         self._given = given
+        if autoreset_mode is None:
+            raise InvalidOption("autoreset_mode cannot be None; it must be 'NextStep', 'SameStep' or 'Disabled'")
         if not _arguments.is_whole(batch_size):
             raise InvalidOption(f"batch_size cannot be {batch_size!r}; it must be a whole number")
-        if batch_size and (batch_size < 0 or num_envs % batch_size):
+        # Whether num_envs is a number is for the worlds to say.
+        if batch_size and _arguments.is_whole(num_envs) and (batch_size < 0 or num_envs % batch_size):
             raise InvalidOption(f"batch_size cannot be {batch_size}; it must divide num_envs ({num_envs}), or be 0 for all lanes")
-        groups = num_envs // batch_size if batch_size else 1
+        groups = num_envs // batch_size if batch_size and _arguments.is_whole(num_envs) else 1
         self._worlds = Worlds(
             given.env_id,
             num_envs,
@@ -437,7 +444,7 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
                     "Values must be a list or tuple with length equal to the number of environments. "
                     f"Got `{len(values)}` values for {self.num_envs} environments."
                 )
-            if any(value != values[0] for value in values):
+            if not all(value is values[0] or np.array_equal(value, values[0]) for value in values):
                 raise ValueError(f"{name} is shared by all lanes; its values must be equal")
             values = values[0]
         setattr(self, name, values)
@@ -482,7 +489,8 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         return {"arguments": self._arguments, "saved": self._infos.save(), "kept": copy.deepcopy(self._kept())}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__init__(**state["arguments"])  # type: ignore[misc]
+        # Not by a subclass's constructor, which has other arguments.
+        VectorEnv.__init__(self, **state["arguments"])
         self._infos.load(state["saved"])
         # A copy: arrays that came through shared memory, as Ray's do, cannot be written to.
         self.__dict__.update(copy.deepcopy(state["kept"]))

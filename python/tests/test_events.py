@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 from typing import Any
 
 import gymnasium
@@ -101,3 +103,33 @@ def test_the_numbers_are_the_engines() -> None:
     assert {kind.name.lower(): int(kind) for kind in Event} == names["kinds"]
     assert {cause.name.lower(): int(cause) for cause in Cause} == names["causes"]
     assert {thing.name: int(thing) for thing in Thing} == names["things"]
+
+
+@pytest.mark.parametrize("batch", [gymnasium.vector.SyncVectorEnv, gymnasium.vector.AsyncVectorEnv])
+def test_gymnasiums_batches_keep_the_events_of_each_environment(batch: Any) -> None:
+    """They put arrays of all environments into one, in which events of different number were lost, or repeated, or an error."""
+    arguments: dict[str, Any] = {"resolution": "64x48", "infos": "events"}
+    lanes = batch([lambda: hasard_rs.make("CollateralDamageLevel1-v0", **arguments)] * 2)
+    native = hasard_rs.make_vec("CollateralDamageLevel1-v0", 2, **arguments)
+    lanes.reset(seed=1)
+    native.reset(seed=1)
+    lanes.action_space.seed(1)
+    seen = 0
+    for _ in range(150):
+        actions = lanes.action_space.sample()
+        theirs, ours = lanes.step(actions)[4]["events"], native.step(actions)[4]["events"]
+        for their, own in zip(theirs, ours, strict=True):
+            assert np.array_equal(np.asarray(their), np.asarray(own))
+            seen += len(own)
+    lanes.close()
+    assert seen > 50
+
+
+def test_events_are_used_as_an_array_and_can_be_copied() -> None:
+    array = np.array([(3, 4), (5, 6)], dtype=[("tic", "<u4"), ("kind", "<i2")])
+    events = hasard_rs.Events(array)
+    for one in (events, copy.deepcopy(events), pickle.loads(pickle.dumps(events))):
+        assert (one == array).all() and (one == events).all() and len(one) == 2
+        assert one["kind"].tolist() == [4, 6] and one.dtype == array.dtype and [int(row["tic"]) for row in one] == [3, 5]
+        assert np.array_equal(np.asarray(one), array) and one.shape == (2,)
+    assert repr(events).startswith("Events(array(")

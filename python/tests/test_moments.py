@@ -102,3 +102,32 @@ def test_six_tuples_come_back_too(lanes: int) -> None:
     env.reset(seed=5)
     assert np.array_equal(env.load(state), observation)
     assert_same([copy.deepcopy(env.step(action)) for action in actions], results)
+
+
+@pytest.mark.parametrize("lanes", [None, 2])
+def test_no_bit_of_a_moment_may_change(lanes: int | None) -> None:
+    env: Any = hasard_rs.make(ENV, **SMALL).unwrapped if lanes is None else hasard_rs.make_vec(ENV, lanes, **SMALL)
+    env.reset(seed=1)
+    env.step(env.action_space.sample())
+    saved = env.save()
+    before = env.save()
+    for bit in range(8 * len(saved)):
+        spoiled = bytearray(saved)
+        spoiled[bit // 8] ^= 1 << bit % 8
+        with pytest.raises(hasard_rs.InvalidOption, match="spoiled"):
+            env.load(bytes(spoiled))
+    assert env.save() == before
+    env.load(saved)
+
+
+class TwoLanes(hasard_rs.VectorEnv):
+    def __init__(self, scenario: str) -> None:
+        super().__init__(scenario=scenario, level=1, num_envs=2, **SMALL)
+
+
+def test_batches_of_a_subclass_are_copied() -> None:
+    env = TwoLanes("RemedyRush")
+    env.reset(seed=3)
+    twin = copy.deepcopy(env)
+    actions = env.action_space.sample()
+    assert type(twin) is TwoLanes and np.array_equal(env.step(actions)[0], twin.step(actions)[0])

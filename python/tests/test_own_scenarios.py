@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -108,3 +111,31 @@ def test_a_batch_of_two_tasks_of_one_name_is_refused(tmp_path: Path) -> None:
         (tmp_path / f"{name}.toml").write_text(f'{hasard_rs.Scenario.from_dict(GARDEN).text}# {name}\n')
     with pytest.raises(hasard_rs.InvalidOption, match="called PyGarden"):
         hasard_rs.make_vec([str(tmp_path / "a.toml"), str(tmp_path / "b.toml")], 2)
+
+
+def test_a_copy_leaves_its_name_to_what_was_made_last() -> None:
+    first = hasard_rs.Scenario.from_dict({**GARDEN, "scenario": {**GARDEN["scenario"], "name": "PyTwice", "tics": 400}})
+    env = first.make(resolution="64x48")
+    env.reset(seed=1)
+    last = hasard_rs.Scenario.from_dict({**GARDEN, "scenario": {**GARDEN["scenario"], "name": "PyTwice", "tics": 800}})
+    copies = [copy.deepcopy(env), pickle.loads(pickle.dumps(env))]
+    assert [one.unwrapped.max_episode_steps for one in copies] == [100, 100]
+    name = last.ids[0]
+    known = [hasard_rs.spec(name).max_episode_steps, hasard_rs.Worlds(name, 1).episode_steps, hasard_rs.make(name).unwrapped.max_episode_steps]
+    assert known == [200, 200, 200]
+    # Of a scenario that has other levels now, the former ids are none.
+    alone = {name: value for name, value in GARDEN.items() if name != "levels"}
+    alone["scenario"] = {**GARDEN["scenario"], "name": "PyTwice"}
+    assert hasard_rs.Scenario.from_dict(alone).ids == ("hasard/PyTwice-v0",) and name not in gymnasium.registry
+
+
+def test_an_unpickled_environment_is_known_by_its_id() -> None:
+    own = hasard_rs.Scenario.from_dict({**GARDEN, "scenario": {**GARDEN["scenario"], "name": "PyFar"}})
+    env = own.make(resolution="64x48")
+    env.reset(seed=1)
+    code = (
+        "import pickle, sys, hasard_rs; pickle.load(sys.stdin.buffer); "
+        "print(hasard_rs.spec('PyFarLevel2-v0').id, hasard_rs.make('PyFarLevel2-v0').unwrapped.level)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(env), capture_output=True)
+    assert done.stdout.decode().split() == ["hasard/PyFarLevel2-v0", "2"], done.stderr.decode()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import gymnasium
 import numpy as np
 import pytest
 from conftest import SMALL
@@ -11,6 +12,7 @@ from conftest import SMALL
 import hasard_rs
 from hasard_rs import published, safety
 from hasard_rs.tianshou import HasardVectorEnv
+from hasard_rs.wrappers import Saute
 
 ENV = "hasard/RemedyRushLevel1-v0"
 
@@ -28,6 +30,74 @@ def test_the_task_is_the_ids(wrong: dict[str, Any]) -> None:
     for make in makes:
         with pytest.raises(TypeError, match=f"'{next(iter(wrong))}' is bound by the id"):
             make()
+
+
+def test_the_task_is_the_ids_for_gymnasium_too() -> None:
+    for wrong in ({"level": 3}, {"scenario": "VolcanicVenture"}):
+        for make in (gymnasium.make, gymnasium.make_vec):
+            with pytest.raises(TypeError, match="bound by the id; hasard/RemedyRushLevel1-v0 cannot be"):
+                make(ENV, **wrong)
+    # An id of one's own may have any.
+    gymnasium.register("mine/Rush-v0", entry_point="hasard_rs.env:entry", kwargs={"scenario": "RemedyRush", "level": 2})
+    assert gymnasium.make("mine/Rush-v0", level=3, **SMALL).unwrapped.level == 3
+
+
+def test_values_that_are_none_are_refused_in_a_line() -> None:
+    for arguments, why in (
+        ({"num_envs": "2", "batch_size": 1}, "num_envs cannot be '2'"),
+        ({"num_envs": None, "batch_size": 1}, "num_envs cannot be None"),
+        ({"autoreset_mode": None}, "autoreset_mode cannot be None"),
+    ):
+        with pytest.raises(hasard_rs.InvalidOption, match=why):
+            hasard_rs.make_vec(ENV, **arguments)
+    env = hasard_rs.make(ENV, **SMALL)
+    env.reset(seed=1)
+    assert env.unwrapped.picture("rgb", np.array([80, 60])).shape == (60, 80, 3)
+    for size in ("", 0, ()):
+        with pytest.raises(hasard_rs.InvalidOption, match="WxH"):
+            env.unwrapped.picture("rgb", size)
+    for saute in ({"saute_gamma": "0.9"}, {"unsafe_reward": float("nan")}, {"budget": 10**400}):
+        with pytest.raises(hasard_rs.InvalidOption, match=f"{next(iter(saute))} cannot be"):
+            Saute(env, **saute)
+    with pytest.raises(hasard_rs.InvalidOption, match="it must be a dict of settings"):
+        hasard_rs.train(ENV, set=["learning.rate=1"])
+    with pytest.raises(hasard_rs.UnknownEnvironment):
+        published.register_environment("RemedyRush", 9)
+    with pytest.raises(hasard_rs.UnknownEnvironment):
+        published.make("RemedyRushLevel9-v0")
+    lanes = HasardVectorEnv(ENV, 4)
+    for seeds in ([1, 2], "x", [1, 2, 3, "4"]):
+        with pytest.raises(ValueError, match="one for each of 4 lanes"):
+            lanes.seed(seeds)
+    lanes.reset()
+
+
+def test_lanes_of_gymnasium_take_a_budget_and_ours_any_value() -> None:
+    lanes = gymnasium.vector.SyncVectorEnv([lambda: hasard_rs.make(ENV, **SMALL)])
+    lanes.set_attr("safety_budget", 3)
+    assert lanes.get_attr("safety_budget") == (3,)
+    native = hasard_rs.make_vec(ENV, 2, **SMALL)
+    native.set_attr("mark", [np.zeros(3)] * 2)
+    assert native.get_attr("mark")[1].tolist() == [0.0] * 3
+    with pytest.raises(ValueError, match="must be equal"):
+        native.set_attr("mark", [np.zeros(3), np.ones(3)])
+
+
+def test_an_end_at_the_limit_is_an_end() -> None:
+    """Gymnasium's TimeLimit would call it cut off too."""
+    def played(limit: int | None) -> tuple[int, tuple[bool, bool]]:
+        env = hasard_rs.make("VolcanicVentureLevel1-v0", hard_constraint=True, max_episode_steps=limit, **SMALL)
+        env.reset(seed=11)
+        env.action_space.seed(1)
+        for step in range(1, 600):
+            _, _, terminated, truncated, _ = env.step(env.action_space.sample())
+            if terminated or truncated:
+                return step, (terminated, truncated)
+        raise AssertionError("it never ends")
+
+    steps, end = played(None)
+    assert end == (True, False) and played(steps) == (steps, end)
+    assert played(steps - 1) == (steps - 1, (False, True))
 
 
 def test_the_seed_that_was_given_first_fills_gaps() -> None:

@@ -63,7 +63,8 @@ def test_what_is_loaded_is_what_plays(tmp_path: Path) -> None:
     assert first.evaluate(1, seed=4) == drawn != newest
     shutil.copytree(tmp_path / "first", checkpoints / oldest.name.replace("frames_", "best_"))
     best = hasard_rs.Agent.load(run.directory, best=True)
-    assert best.evaluate(1, seed=4) == drawn and best.evaluate(1, seed=4, best=False) == newest
+    # The episode; the summary has the frames that the run had made by then.
+    assert best.evaluate(1, seed=4)[0] == drawn[0] and best.evaluate(1, seed=4, best=False) == newest
     assert [episode["seed"] for episode in best.evaluate(2, seed=2**64 - 1)[:2]] == [2**64 - 1, 0]
     for wrong in ({"episodes": 0}, {"episodes": 2.5}, {"seed": -1}, {"seed": "x"}):
         with pytest.raises((ValueError, TypeError)):
@@ -218,6 +219,23 @@ def test_agents_that_watch_a_named_term_are_given_it(tmp_path: Path) -> None:
     rows = [agent.act(observations, agent.after(state, infos["cost"], over, given))[1].memory for given in (terms, terms + 4.0)]
     spent, more = (agent._trained.outputs(observations, memory)[0] for memory in rows)
     assert not np.array_equal(spent, more), "what the term costs is seen"
+
+
+def test_other_agents_need_no_cost_terms_and_stay_in_the_action_space(tmp_path: Path) -> None:
+    run = hasard_rs.train(ENV, out=tmp_path / "run", full_actions=True, safety_budget="harmful_items=5", callback=lambda report: True, **SMALL)
+    agent = hasard_rs.Agent.load(run.directory)
+    vec = agent.make_vec(4)
+    observations, _ = vec.reset(seed=1)
+    state, beyond = None, 0
+    for _ in range(40):
+        actions, state = agent.act(observations, state)
+        assert vec.action_space.contains(actions)
+        beyond += int((np.abs(actions["deltas"]) == 1.0).sum())
+        observations, _, terminations, truncations, infos = vec.step(actions)
+        state = agent.after(state, infos["cost"], terminations | truncations)
+    assert beyond > 0, "none of its draws was beyond what a player can do"
+    with pytest.raises(TypeError, match="costs must be an array"):
+        agent.after(state, None, terminations)
 
 
 def test_callbacks_that_raise_end_the_run(tmp_path: Path) -> None:

@@ -88,7 +88,10 @@ impl fmt::Display for EnvError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             EnvError::UnknownId { id, .. } if id.contains(".toml") => {
-                write!(f, "{id}: a task's file is no id; own::open gives the id that it has")
+                write!(
+                    f,
+                    "{id}: a task's file is no id; give a path that ends in .toml, or the id that own::open gives"
+                )
             }
             EnvError::UnknownId { id, nearest } if nearest.is_empty() => {
                 write!(

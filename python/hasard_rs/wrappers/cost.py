@@ -30,6 +30,11 @@ class CostWrapper(Moments, RecordConstructorArgs):
         """Cost that an episode may have, as `Env.safety_budget`."""
         return float(self.env.get_wrapper_attr("safety_budget"))
 
+    @safety_budget.setter
+    def safety_budget(self, budget: float) -> None:
+        """Sets that of the environment within, to another `budget`."""
+        self.env.unwrapped.safety_budget = budget  # type: ignore[attr-defined]
+
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Starts an episode; seed and options as for `Env.reset`, and so is what it returns."""
         observation, info = self.env.reset(seed=seed, options=options)

@@ -13,6 +13,13 @@ from hasard_rs.errors import InvalidOption
 from hasard_rs.wrappers.moments import Moments
 
 
+def _is_finite(value: Any) -> bool:
+    try:
+        return isinstance(value, numbers.Real) and math.isfinite(value)
+    except OverflowError:  # An integer beyond all floats.
+        return False
+
+
 class Saute(Moments, RecordConstructorArgs):
     """Counts down what is left of the budget: a step that finds nothing left is rewarded with `unsafe_reward`.
 
@@ -26,7 +33,7 @@ class Saute(Moments, RecordConstructorArgs):
         unsafe_reward: of each step that finds nothing left.
 
     Raises:
-        InvalidOption for a saute_gamma that is no discount, or a budget that is no finite number of at least 0.
+        InvalidOption for a saute_gamma that is no discount, a budget that is no finite number of at least 0, or an unsafe_reward that is none.
     """
 
     _own = "safety_state"
@@ -34,10 +41,12 @@ class Saute(Moments, RecordConstructorArgs):
     def __init__(
         self, env: gymnasium.Env[Any, Any], saute_gamma: float = 0.99, *, budget: float | None = None, unsafe_reward: float = -1.0
     ) -> None:
-        if not 0.0 < saute_gamma <= 1.0:
+        if not (isinstance(saute_gamma, numbers.Real) and 0.0 < saute_gamma <= 1.0):
             raise InvalidOption(f"saute_gamma cannot be {saute_gamma!r}; it must be above 0, at most 1")
-        if budget is not None and not (isinstance(budget, numbers.Real) and math.isfinite(budget) and budget >= 0):
-            raise InvalidOption(f"budget cannot be {budget!r}; it must be a finite number, 0 or more")
+        if budget is not None and not (_is_finite(budget) and budget >= 0):
+            raise InvalidOption(f"budget cannot be {budget!r:.60}; it must be a finite number, 0 or more")
+        if not _is_finite(unsafe_reward):
+            raise InvalidOption(f"unsafe_reward cannot be {unsafe_reward!r:.60}; it must be a finite number")
         RecordConstructorArgs.__init__(self, saute_gamma=saute_gamma, budget=budget, unsafe_reward=unsafe_reward)
         gymnasium.Wrapper.__init__(self, env)
         steps = env.get_wrapper_attr("max_episode_steps")

@@ -9,7 +9,12 @@ impl TrainConfig {
     pub fn set_frames(&mut self, frames: u64) {
         self.frames = frames;
         if self.preset == Preset::Quick {
-            self.algorithm_settings.pid_reference_budget = Some(reference_budget(frames));
+            let reference = if self.all_tasks(|scenario| scenario.hits_late) {
+                slow_reference_budget(frames)
+            } else {
+                reference_budget(frames)
+            };
+            self.algorithm_settings.pid_reference_budget = Some(reference);
             let farther = frames >= LONG && self.all_tasks(|scenario| scenario.rewards_foresight);
             self.learning.final_gamma = farther.then_some(0.99);
             self.learning.final_gae_lambda = farther.then_some(0.95);
@@ -39,6 +44,14 @@ fn reference_budget(frames: u64) -> f64 {
     (450.0 * (2_000_000.0 / frames.max(1) as f64).sqrt()).round().clamp(45.0, 450.0)
 }
 
+/// The same where a multiplier that comes too soon ends what an agent has yet to learn: a tenth of it
+/// from 10 million frames on (docs/tried/levers.md).
+fn slow_reference_budget(frames: u64) -> f64 {
+    let share = 2_000_000.0 / frames.max(1) as f64;
+    // A tenth at a fifth of the frames.
+    (450.0 * libm::pow(share, libm::log(10.0) / libm::log(5.0))).round().clamp(45.0, 450.0)
+}
+
 /// Settings that learn within minutes.
 pub(super) fn quicken(config: &mut TrainConfig) {
     config.set_frames(10_000_000);
@@ -55,6 +68,10 @@ pub(super) fn quicken(config: &mut TrainConfig) {
     // learned from four million frames is learned from two (docs/tried/levers.md).
     if config.all_tasks(|scenario| scenario.prompt) {
         (config.learning.gamma, config.learning.gae_lambda) = (0.97, 0.7);
+    }
+    // A lambda of 0.7 forgets within ten steps who fired.
+    if config.all_tasks(|scenario| scenario.hits_late) {
+        config.learning.gae_lambda = 0.95;
     }
     // Before its first delivery Armament Burden earns nothing, and its critics' noise is 0.001.
     config.learning.advantage_floor = 0.01;
@@ -102,6 +119,26 @@ mod tests {
             config.set_frames(frames);
             assert_eq!((config.frames, reference(&config)), (frames, Some(budget)));
         }
+    }
+
+    /// 450 for 2 million frames and 45, a tenth, for 10 million; between them 450 * (2 / 4)^1.43.
+    #[test]
+    fn where_shots_hit_late_multipliers_are_slower_and_lambdas_longer() {
+        let mut config = quick(AlgorithmKind::PpoPid, "CollateralDamageLevel2-v0");
+        assert_eq!((config.learning.gamma, config.learning.gae_lambda), (0.97, 0.95));
+        for (frames, budget) in [
+            (1_000_000, 450.0),
+            (2_000_000, 450.0),
+            (4_000_000, 167.0),
+            (10_000_000, 45.0),
+            (u64::MAX, 45.0),
+        ] {
+            config.set_frames(frames);
+            assert_eq!(config.algorithm_settings.pid_reference_budget, Some(budget), "{frames}");
+        }
+        let both = quick(AlgorithmKind::PpoPid, "CollateralDamageLevel1-v0,RemedyRushLevel1-v0");
+        assert_eq!(both.learning.gae_lambda, 0.7);
+        assert_eq!(both.algorithm_settings.pid_reference_budget, Some(201.0));
     }
 
     #[test]

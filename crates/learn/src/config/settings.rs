@@ -26,8 +26,11 @@ const OTHERS_HANG_ON: [(&str, &str); 12] = [
     ("changes", "--resume, which writes them down"),
 ];
 
+/// What a setting decides beside itself.
+type Decide = fn(&mut TrainConfig);
+
 /// Settings that decide others too, and how.
-const DECIDE_OTHERS: [(&str, fn(&mut TrainConfig)); 4] = [
+const DECIDE_OTHERS: [(&str, Decide); 4] = [
     ("learning.rate", |config| config.learning.final_rate = None),
     ("learning.gamma", |config| config.learning.final_gamma = None),
     ("learning.gae_lambda", |config| config.learning.final_gae_lambda = None),

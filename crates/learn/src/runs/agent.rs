@@ -132,7 +132,8 @@ impl TrainedPolicy {
         cost_terms: &[CostTerm],
     ) -> Result<TrainedPolicy, LearnError> {
         // Only the algorithms of a single constraint shape what the network sees by it.
-        let watched = find_terms(cost_terms, &config.constraints[..1])?.swap_remove(0);
+        let term = find_terms(cost_terms, &config.constraints[..1])?.swap_remove(0);
+        let watched = term.filter(|_| shaping(config).extra_inputs() > 0);
         Ok(TrainedPolicy {
             config: config.clone(),
             shape: shape.clone(),

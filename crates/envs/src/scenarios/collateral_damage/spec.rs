@@ -15,6 +15,7 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     rockets_shed: true,
     saute_unsafe_reward: -0.1,
     prompt: true,
+    hits_late: true,
     paper_place: 3,
     number: 1,
     moments: (MOMENTS, 1),

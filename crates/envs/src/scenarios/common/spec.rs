@@ -138,6 +138,9 @@ pub struct ScenarioSpec {
     pub prompt: bool,
     /// Who has learned what follows soon returns more by looking further ahead.
     pub rewards_foresight: bool,
+    /// What an action earns or costs follows after a flight of some ten steps, and a budget is kept
+    /// by a policy that is long in the making.
+    pub hits_late: bool,
     /// Place in the paper's tables, from 0.
     pub paper_place: usize,
     /// What stands for it in the fingerprint of a state.
@@ -179,6 +182,7 @@ impl ScenarioSpec {
             penalty_scales: [[1.0; 2]; 3],
             prompt: false,
             rewards_foresight: false,
+            hits_late: false,
             paper_place: usize::MAX,
             number: -1,
             moments: (&[], 0),
