@@ -187,7 +187,7 @@ pub fn evaluate(
     }
     let summary = Evaluation::of(&all, &constraints).map_err(|error| Some(error.to_string()))?;
     let mut row = episode_lines::summary_row(&summary, &all);
-    row["summary"]["run_frames"] = json!(policy.run_frames());
+    row["summary"]["run_frames"] = policy.run_frames().into();
     rows.push(row);
     Ok(rows)
 }

@@ -18,7 +18,7 @@ pub struct ReportArgs {
     /// Title of the page
     #[arg(long, default_value = "HASARD results")]
     pub title: String,
-    /// For a paper too: tables.tex (booktabs), a document around it, and every figure as PDF
+    /// For a paper too: tables.tex (booktabs), a document around it, and every chart as PDF
     #[arg(long)]
     pub latex: bool,
     /// One JSON object about what was written
