@@ -12,6 +12,7 @@ mod efficiency;
 mod equal_frames;
 mod heatmaps;
 mod main_results;
+mod marks;
 mod missing;
 mod pareto;
 mod players;
