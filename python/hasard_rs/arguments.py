@@ -111,6 +111,8 @@ def read(given: dict[str, Any], *, vector: bool) -> Arguments:
     own = [name for name in vars(arguments) if name not in ("env_id", "world")]
     for name, value in given.items():
         if name in _WORLD:
+            if name in ("maps", "map", "iwad") and isinstance(value, str) and not value:
+                raise InvalidOption(f"{name} cannot be ''; it must be a path, 'auto', or None")
             arguments.world[name] = value
         elif name in own:
             setattr(arguments, name, value)

@@ -47,6 +47,8 @@ def test_values_that_are_none_are_refused_in_a_line() -> None:
         ({"num_envs": "2", "batch_size": 1}, "num_envs cannot be '2'"),
         ({"num_envs": None, "batch_size": 1}, "num_envs cannot be None"),
         ({"autoreset_mode": None}, "autoreset_mode cannot be None"),
+        ({"maps": ""}, "maps cannot be ''"),
+        ({"iwad": ""}, "iwad cannot be ''"),
     ):
         with pytest.raises(hasard_rs.InvalidOption, match=why):
             hasard_rs.make_vec(ENV, **arguments)
