@@ -185,6 +185,9 @@ pub fn usage_line(error: &clap::Error) -> String {
 fn elsewhere(flag: &str) -> Option<String> {
     use clap::CommandFactory;
     let name = flag.trim_start_matches('-');
+    if name == flag {
+        return forgotten_dashes(flag);
+    }
     if ["on", "workers"].contains(&name) {
         return Some(format!(
             "there is no {flag}; only the `hasard` of `pip install .` has it: docs/python.md, Clusters"
@@ -212,6 +215,15 @@ fn elsewhere(flag: &str) -> Option<String> {
         Some(own) => format!("there is no {flag}; of a training that is --{own}"),
         None => format!("there is no {flag}; of a training that is --set {setting}=VALUE"),
     })
+}
+
+/// What to say of a word too many that would be a flag with dashes before it.
+fn forgotten_dashes(word: &str) -> Option<String> {
+    use clap::CommandFactory;
+    let all = crate::args::Cli::command();
+    let has = |one: &clap::Command| one.get_arguments().any(|one| one.get_long() == Some(word));
+    let known = all.get_subcommands().any(has);
+    known.then(|| format!("'{word}' is one word too many; did you mean --{word}?"))
 }
 
 /// The program and, if the first word names one, its command: whose help says more.

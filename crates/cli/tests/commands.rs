@@ -120,6 +120,13 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ),
         ("train RemedyRushLevel1-v0 --safety-budget rain=3 --out new", &["rain", "harmful_items"]),
         ("train RemedyRushLevel1-v0 --device tpu --out new", &["tpu", "cpu"]),
+        (
+            "train RemedyRushLevel1-v0 --device cpu:1 --out new",
+            &["cpu:1", "no number", "write cpu"],
+        ),
+        ("train RemedyRushLevel1-v0 --device cpu: --out new", &["cpu:", "write cpu"]),
+        ("rollout VolcanicVentureLevel1 seed 5", &["'seed'", "did you mean --seed?"]),
+        ("site nosuch.mp4 -o st", &["nosuch.mp4", "hasard record"]),
         ("train RemedyRushLevel1-v0 --iwad none.wad --out new", &["none.wad"]),
         ("export-wad RemedyRushLevel1-v0 -o folder", &["folder"]),
         ("fly", &["fly"]),

@@ -295,6 +295,27 @@ fn a_later_evaluation_counts_by_its_summary_and_until_the_run_goes_on() {
     assert!(rows[0].contains(",end of training,"), "{rows:?}");
 }
 
+/// By whatever names, and through links in a circle.
+#[cfg(unix)]
+#[test]
+fn what_is_named_twice_counts_once() {
+    let folder = Folder::new("twice");
+    close(&run(&folder, "one", ENV, "PPO", 1e6, ""), 12.0, 1e6, 0.5);
+    chance(&folder, ENV);
+    let runs = folder.0.join("runs");
+    for name in ["a", "b", "c", "d"] {
+        std::os::unix::fs::symlink(".", runs.join(name)).unwrap();
+    }
+    let file = runs.join(format!("random-{ENV}-tables.jsonl"));
+    let named = [runs.clone(), runs.join("one"), file.clone(), runs.join("a"), file];
+    let out = folder.0.join("out");
+    let written = write_report(&named, &out, "Twice").unwrap();
+    let text = std::fs::read_to_string(out.join("report.md")).unwrap();
+    assert_eq!(written.runs, 1);
+    // Returns of 1, 2 and 3: 4.3027 / sqrt(3).
+    assert!(text.contains("| 2.00 ± 2.48 (n=3) |"), "{text}");
+}
+
 /// Two versions of the program may learn differently.
 #[test]
 fn seeds_of_two_versions_are_named() {

@@ -10,6 +10,7 @@ use hasard_learn::runs::agent::run_config;
 use hasard_learn::runs::agent_file::{AgentFile, export};
 use hasard_learn::runs::checksum::sha256;
 use hasard_learn::runs::claim::{Claim, measure, wrong_words};
+use hasard_learn::runs::run_directory::damaged_selection;
 use hasard_media::files::{Scratch, write_whole};
 use hasard_report::document::count;
 use serde_json::json;
@@ -23,6 +24,9 @@ pub fn run(args: &ClaimArgs) -> Outcome {
     let agent = zoo::find(&args.agent)?;
     let config = run_config(&agent).map_err(Failure::bad)?;
     let bytes = if agent.is_dir() {
+        if let Some(problem) = damaged_selection(&agent) {
+            note!("hasard: {problem}; the best candidate is taken");
+        }
         export(&agent)
     } else {
         AgentFile::read_whole(&agent).map(|(bytes, _)| bytes)

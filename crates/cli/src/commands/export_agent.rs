@@ -5,6 +5,7 @@ use crate::failure::{Failure, Outcome};
 use crate::places;
 use crate::zoo::ENDING;
 use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
+use hasard_learn::runs::run_directory::damaged_selection;
 use hasard_media::files::WholeFile;
 use hasard_media::shell::quote;
 use serde_json::json;
@@ -14,6 +15,9 @@ use std::path::PathBuf;
 /// Runs the command.
 pub fn run(args: &ExportAgentArgs) -> Outcome {
     let run = places::run(args.run.as_os_str())?;
+    if let Some(problem) = damaged_selection(&run).filter(|_| !args.latest) {
+        note!("hasard: {problem}; the best candidate is taken");
+    }
     let bytes = if args.latest { export_latest(&run) } else { export(&run) };
     let bytes = bytes.map_err(Failure::bad)?;
     let file = AgentFile::parse(&bytes).map_err(Failure::bad)?;

@@ -16,6 +16,10 @@ pub fn run(args: &SiteArgs) -> Outcome {
             other.display()
         )));
     }
+    if let Some(missing) = args.films.iter().find(|path| !path.is_file()) {
+        let why = "there is no such film; `hasard record` makes one";
+        return Err(Failure::bad(format!("{}: {why}", missing.display())));
+    }
     let sources = Sources { root: args.root.clone(), films: args.films.clone() };
     let written = write_site(&sources, &args.out).map_err(Failure::bad)?;
     let page = written.page.display().to_string();

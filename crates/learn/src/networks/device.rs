@@ -68,6 +68,10 @@ impl ComputeDevice {
     /// of that number.
     pub fn named(name: &str) -> Result<ComputeDevice, LearnError> {
         let (kind, number) = name.split_once(':').unwrap_or((name, "0"));
+        if kind == "cpu" && name != kind {
+            let why = format!("device '{name}': the processor has no number; write cpu");
+            return Err(LearnError::Config(why));
+        }
         let number: usize = number.parse().map_err(|_| {
             LearnError::Config(format!(
                 "device '{name}' has no number after the colon; write {kind}:0"

@@ -19,7 +19,7 @@ use crate::networks::{Actor, ImageShape, ModelShape, Published};
 use crate::random::{Purpose, Stream};
 use crate::runs::agent_file::AgentFile;
 use crate::runs::checkpoint::{Loaded, Store};
-use crate::runs::run_directory::{GONE, damaged_selection, go_on, read_config};
+use crate::runs::run_directory::{GONE, damaged_selection, go_on, read_config, spoiled_selection};
 use crate::sampling::privileged::Privileged;
 use crate::sampling::shaping::{Shaping, seen};
 
@@ -169,7 +169,9 @@ impl TrainedPolicy {
         let selected = store.selected();
         let has_selected = selected.is_some();
         let loaded = match (which, selected) {
-            (Which::Selected, Some(selected)) => Some(Loaded::read(&selected)?),
+            (Which::Selected, Some(selected)) => {
+                Some(Loaded::read(&selected).map_err(|error| spoiled_selection(&error))?)
+            }
             _ => store.newest(warn)?,
         };
         let loaded = loaded.ok_or_else(|| {

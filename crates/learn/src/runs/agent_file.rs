@@ -20,7 +20,7 @@ use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::networks::ModelShape;
 use crate::runs::checkpoint::{Loaded, Store, parameter_names};
-use crate::runs::run_directory::{GONE, go_on, read_config, read_selection};
+use crate::runs::run_directory::{GONE, go_on, read_config, read_selection, spoiled_selection};
 use crate::runs::selection::Candidate;
 use crate::runs::zoo;
 use crate::sampling::auxiliary::Auxiliary;
@@ -134,7 +134,7 @@ pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
             format!("no checkpoint was selected yet; let the run be evaluated: {command}"),
         )
     })?;
-    let checkpoint = Loaded::read(&best)?;
+    let checkpoint = Loaded::read(&best).map_err(|error| spoiled_selection(&error))?;
     // A run that went on since it was selected may have dropped that checkpoint: what is known of
     // another says nothing of this one.
     let frames = checkpoint.progress.frames;

@@ -312,6 +312,13 @@ pub fn damaged_selection(path: &Path) -> Option<String> {
     read_selection(path).is_none().then(|| format!("{}: damaged or not to be read", file.display()))
 }
 
+/// What to do where the checkpoint that a run selected cannot be read.
+pub(super) fn spoiled_selection(error: &LearnError) -> LearnError {
+    LearnError::Config(format!(
+        "{error}; --latest takes the newest checkpoint, and once this folder is gone the next candidate is selected"
+    ))
+}
+
 /// The settings of the run in a directory.
 pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
     let file = path.join("config.json");

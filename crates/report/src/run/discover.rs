@@ -2,7 +2,7 @@
 
 use super::{EpisodeResult, FRAME_SKIP, Run, Warning, read_episode_lines, read_text, sorted_files};
 use hasard_media::episode::EpisodeFile;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// How deep runs are looked for below a named folder: sweeps put them at `sweep/env/algo/seed`.
@@ -52,10 +52,14 @@ pub struct Found {
 /// When a named path does not exist, or nothing at all is found.
 pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
     let mut found = Found::default();
+    let mut seen = Seen::new();
     for path in paths {
         if path.is_dir() {
-            look(path, 0, &mut found);
+            look(path, 0, &mut found, &mut seen);
         } else if path.is_file() {
+            if !is_new(path, &mut seen) {
+                continue;
+            }
             match path.extension().and_then(|extension| extension.to_str()) {
                 Some("episode") => read_episode_file(path, &mut found),
                 Some("jsonl") => read_rollout(path, &mut found),
@@ -74,12 +78,6 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
         }
     }
     found.runs.sort_by(|a, b| a.path.cmp(&b.path));
-    // A run named twice (`runs runs/a`) is one run.
-    let mut seen = std::collections::BTreeSet::new();
-    found.runs.retain(|run| {
-        let path = run.path.canonicalize().unwrap_or_else(|_| run.path.clone());
-        seen.insert((path, run.config.env.clone()))
-    });
     found.warnings.sort();
     found.warnings.dedup();
     if found.runs.is_empty() && found.players.is_empty() {
@@ -98,7 +96,18 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
 /// folder itself is named.
 pub const TRASH: &str = ".trash";
 
-fn look(folder: &Path, depth: usize, found: &mut Found) {
+/// Files and folders that were looked at, by their real paths: what is named twice, by a link too,
+/// counts once.
+type Seen = BTreeSet<PathBuf>;
+
+fn is_new(path: &Path, seen: &mut Seen) -> bool {
+    seen.insert(path.canonicalize().unwrap_or_else(|_| path.to_owned()))
+}
+
+fn look(folder: &Path, depth: usize, found: &mut Found, seen: &mut Seen) {
+    if !is_new(folder, seen) {
+        return;
+    }
     if folder.join("config.json").is_file() {
         match Run::read(folder, &mut found.warnings) {
             Ok(run) => found.runs.extend(run.by_task()),
@@ -114,8 +123,9 @@ fn look(folder: &Path, depth: usize, found: &mut Found) {
             continue;
         }
         if path.is_dir() {
-            // A link could lead in a circle; the bound on depth ends it.
-            look(&path, depth + 1, found);
+            look(&path, depth + 1, found, seen);
+        } else if !is_new(&path, seen) {
+            // It was read by another name.
         } else if path.extension().is_some_and(|extension| extension == "episode") {
             read_episode_file(&path, found);
         } else if holds_episodes(&path) {
