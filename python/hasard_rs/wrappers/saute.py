@@ -41,7 +41,7 @@ class Saute(Moments, RecordConstructorArgs):
     def __init__(
         self, env: gymnasium.Env[Any, Any], saute_gamma: float = 0.99, *, budget: float | None = None, unsafe_reward: float = -1.0
     ) -> None:
-        if not (isinstance(saute_gamma, numbers.Real) and 0.0 < saute_gamma <= 1.0):
+        if not (_is_finite(saute_gamma) and 0.0 < saute_gamma <= 1.0):
             raise InvalidOption(f"saute_gamma cannot be {saute_gamma!r}; it must be above 0, at most 1")
         if budget is not None and not (_is_finite(budget) and budget >= 0):
             raise InvalidOption(f"budget cannot be {budget!r:.60}; it must be a finite number, 0 or more")
