@@ -67,8 +67,7 @@ class Shared:
         """Takes what Gymnasium has `given`, its values as JSON can hold them. Raises InvalidOption for a limit of steps that cannot be, TypeError for
         a scenario or level that is not the id's."""
         if given is not None:
-            if given.id.startswith("hasard/") and scenario_and_level(given.id) != (self.scenario_name, self.level):
-                raise TypeError(f"scenario and level are bound by the id; {given.id} cannot be {self.scenario_name} {self.level}: ask for that id")
+            _check_task(given.id, self.scenario_name, self.level)
             self._limit(_asked_limit(sys._getframe(1), given))
             given = copy.copy(given)
             if given.entry_point == f"{type(self).__module__}:entry":
@@ -83,6 +82,12 @@ class Shared:
     def _kept(self) -> dict[str, Any]:
         """What of this object a pickle keeps as it is, beside the arguments and where the worlds are."""
         return {name: value for name, value in self.__dict__.items() if name not in _MADE_ANEW}
+
+
+def _check_task(env_id: str, scenario: str, level: int) -> None:
+    """Raises TypeError for a scenario or level that is not the id's; ids of one's own may have any."""
+    if env_id.startswith("hasard/") and scenario_and_level(env_id) != (scenario, level):
+        raise TypeError(f"scenario and level are bound by the id; {env_id} cannot be {scenario} {level}: ask for that id")
 
 
 def _asked_limit(frame: Any, given: Any) -> Any:

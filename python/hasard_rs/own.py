@@ -92,7 +92,7 @@ def _file_of(spec: Any) -> Any:
 @contextmanager
 def names_kept(arguments: dict[str, Any]) -> Iterator[None]:
     """While an environment is made from its `arguments`, by a copy or a pickle too, its own text goes by its name; afterwards the last one that
-    was made known by that name does again."""
+    was made known by that name does again. Returns what `with` takes."""
     tasks = arguments.get("tasks") or [arguments]
     own = {task["scenario"]: task["scenario_file"] for task in tasks if task.get("scenario_file") and task.get("scenario")}
     if not own:

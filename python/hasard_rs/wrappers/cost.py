@@ -27,7 +27,7 @@ class CostWrapper(Moments, RecordConstructorArgs):
 
     @property
     def safety_budget(self) -> float:
-        """Cost that an episode may have, as `Env.safety_budget`."""
+        """Cost that an episode may have, as `Env.safety_budget`; another `budget` is that of the environment within."""
         return float(self.env.get_wrapper_attr("safety_budget"))
 
     @safety_budget.setter
