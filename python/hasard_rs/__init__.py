@@ -65,12 +65,9 @@ def make(env_id: str | os.PathLike[str], **kwargs: Any) -> gymnasium.Env[Any, An
     """
     from hasard_rs.wrappers.cost import CostWrapper
 
-    _arguments.refuse_task(kwargs)
-    if _arguments.is_whole(kwargs.get("max_episode_steps")):
-        # Gymnasium takes no other integers than Python's.
-        kwargs["max_episode_steps"] = int(kwargs["max_episode_steps"])
+    kwargs = _arguments.for_make(kwargs)
     made = _gymnasium.make(f"hasard/{_known(env_id)}", **kwargs)
-    # The environment itself ends episodes at their limit. Gymnasium's wrapper would call the last step cut off even where it is an end.
+    # The environment itself ends episodes at their limit. Gymnasium's wrapper would call an end at the last step cut off too.
     return CostWrapper(made.env if isinstance(made, _gymnasium.wrappers.TimeLimit) else made)
 
 

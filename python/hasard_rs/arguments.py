@@ -84,6 +84,13 @@ def refuse_task(given: Iterable[str]) -> None:
             raise TypeError(f"argument '{name}' is bound by the id; leave it out, and give another id for another task")
 
 
+def for_make(given: dict[str, Any]) -> dict[str, Any]:
+    """Returns arguments `given` for an id as Gymnasium's `make` takes them: of integers none but Python's. Raises what `refuse_task` does."""
+    refuse_task(given)
+    limit: Any = given.get("max_episode_steps")
+    return {**given, "max_episode_steps": int(limit)} if is_whole(limit) else given
+
+
 def over(usual: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
     """Returns the arguments `given`, and of the `usual` ones those that are not given, by either of their names."""
     named = {_NAMES.get(name, name) for name in given}

@@ -53,14 +53,14 @@ class Infos:
     def save(self) -> bytes:
         """Returns where the worlds are, what their running episodes have cost so far, and a checksum of both."""
         state: bytes = self.worlds.save() + self.cost.astype("<f8").tobytes()
-        return state + _checksum(state)
+        return state + checksum(state)
 
     def load(self, state: Any) -> Any:
         """Brings the worlds and their costs to where `state` was saved. Returns the batch; raises InvalidOption, TypeError for what is no bytes."""
         if not isinstance(state, bytes):
             raise TypeError(f"a saved moment must be bytes, got {type(state).__name__}")
-        state, checksum = state[:-4], state[-4:]
-        if checksum != _checksum(state):
+        state, noted = state[:-4], state[-4:]
+        if noted != checksum(state):
             raise InvalidOption("the saved moment is spoiled, or of another version: its checksum is another; save it anew")
         end = max(0, len(state) - self.cost.nbytes)
         batch = self.worlds.load(state[:end])
@@ -92,7 +92,8 @@ class Infos:
         return {name: float(column[0]) for name, column in self._stats(np.array([cost]), statistics).items()}
 
 
-def _checksum(state: bytes) -> bytes:
+def checksum(state: bytes) -> bytes:
+    """Returns the four bytes by which a changed `state` is found out."""
     return zlib.crc32(state).to_bytes(4, "little")
 
 

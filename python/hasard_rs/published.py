@@ -13,7 +13,7 @@ from typing import Any
 import gymnasium
 
 from hasard_rs import _core
-from hasard_rs.arguments import is_whole, over, refuse_task
+from hasard_rs.arguments import for_make, over
 from hasard_rs.env import Env
 from hasard_rs.registry import LEVELS, Scenario, bare
 from hasard_rs.wrappers.cost import CostPenalty, CostWrapper
@@ -127,11 +127,8 @@ def register_environment(scenario: str | Scenario, level: int) -> None:
 
 def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
     """Returns an environment by its bare env_id, in a `CostWrapper`; kwargs as of `DoomEnv`. Raises what `hasard_rs.make` does."""
-    refuse_task(kwargs)
+    kwargs = for_make(kwargs)
     _core.describe(bare(env_id))
-    if is_whole(kwargs.get("max_episode_steps")):
-        # Gymnasium takes no other integers than Python's.
-        kwargs["max_episode_steps"] = int(kwargs["max_episode_steps"])
     return CostWrapper(gymnasium.make(bare(env_id), **kwargs))
 
 

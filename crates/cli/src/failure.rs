@@ -185,8 +185,14 @@ pub fn usage_line(error: &clap::Error) -> String {
 fn elsewhere(flag: &str) -> Option<String> {
     use clap::CommandFactory;
     let name = flag.trim_start_matches('-');
+    let all = crate::args::Cli::command();
+    let has = |one: &clap::Command| one.get_arguments().any(|one| one.get_long() == Some(name));
+    let having = all.get_subcommands().filter(|one| has(one)).map(clap::Command::get_name);
+    let having: Vec<&str> = having.collect();
+    // A word too many, which would be a flag with dashes before it.
     if name == flag {
-        return forgotten_dashes(flag);
+        let line = || format!("'{flag}' is one word too many; did you mean --{flag}?");
+        return (!having.is_empty()).then(line);
     }
     if ["on", "workers"].contains(&name) {
         return Some(format!(
@@ -198,10 +204,7 @@ fn elsewhere(flag: &str) -> Option<String> {
             "there is no {flag}; environments stand without a flag, as in `hasard rollout ENV --policy AGENT`, which plays an agent in any"
         ));
     }
-    let all = crate::args::Cli::command();
-    let has = |one: &clap::Command| one.get_arguments().any(|one| one.get_long() == Some(name));
-    let having = all.get_subcommands().filter(|one| has(one)).map(clap::Command::get_name);
-    match having.collect::<Vec<&str>>()[..] {
+    match having[..] {
         [] => {}
         [only] => return Some(format!("{flag} is of `hasard {only}`, not of this command")),
         [ref first @ .., last] if first.len() < 4 => {
@@ -215,15 +218,6 @@ fn elsewhere(flag: &str) -> Option<String> {
         Some(own) => format!("there is no {flag}; of a training that is --{own}"),
         None => format!("there is no {flag}; of a training that is --set {setting}=VALUE"),
     })
-}
-
-/// What to say of a word too many that would be a flag with dashes before it.
-fn forgotten_dashes(word: &str) -> Option<String> {
-    use clap::CommandFactory;
-    let all = crate::args::Cli::command();
-    let has = |one: &clap::Command| one.get_arguments().any(|one| one.get_long() == Some(word));
-    let known = all.get_subcommands().any(has);
-    known.then(|| format!("'{word}' is one word too many; did you mean --{word}?"))
 }
 
 /// The program and, if the first word names one, its command: whose help says more.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
@@ -11,6 +10,7 @@ import gymnasium
 from gymnasium.wrappers import OrderEnforcing, TimeLimit
 
 from hasard_rs.errors import InvalidOption
+from hasard_rs.infos import checksum
 
 _VERSION = 1
 # What Gymnasium's wrappers know of an episode; the others that its `make` adds know nothing.
@@ -28,7 +28,7 @@ class Moments(gymnasium.Wrapper[Any, Any, Any, Any]):
         below = (-1 if getattr(env, name) is None else getattr(env, name) for env, name in _between(self))
         numbers = [getattr(self, self._own), *below]
         rest = struct.pack(f"<{len(numbers)}d", *numbers) + self.env.get_wrapper_attr("save")()
-        return _head(self) + struct.pack("<I", zlib.crc32(rest)) + rest
+        return _head(self) + checksum(rest) + rest
 
     def load(self, state: bytes) -> Any:
         """Comes back to a saved moment, which counts as a reset where one came before it.
@@ -48,7 +48,7 @@ class Moments(gymnasium.Wrapper[Any, Any, Any, Any]):
         form = f"<{1 + len(below)}d"
         start = len(head) + 4
         rest = state[start:]
-        if not state.startswith(head) or len(rest) < struct.calcsize(form) or state[len(head) : start] != struct.pack("<I", zlib.crc32(rest)):
+        if not state.startswith(head) or len(rest) < struct.calcsize(form) or state[len(head) : start] != checksum(rest):
             name = type(self).__name__
             raise InvalidOption(f"state cannot be these bytes, which are no moment of this {name}, or spoiled; give what save of one made alike gave")
         own, *numbers = struct.unpack_from(form, rest)

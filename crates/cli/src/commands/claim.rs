@@ -1,16 +1,16 @@
 //! `hasard claim`: what an agent scores on the episodes of a scoreboard, as a file that anybody can
 //! check.
 
+use super::export_agent::export_selected;
 use crate::args::ClaimArgs;
 use crate::commands::train_again;
 use crate::failure::{Failure, Outcome};
 use crate::settings::cores;
 use crate::zoo;
 use hasard_learn::runs::agent::run_config;
-use hasard_learn::runs::agent_file::{AgentFile, export};
+use hasard_learn::runs::agent_file::AgentFile;
 use hasard_learn::runs::checksum::sha256;
 use hasard_learn::runs::claim::{Claim, measure, wrong_words};
-use hasard_learn::runs::run_directory::damaged_selection;
 use hasard_media::files::{Scratch, write_whole};
 use hasard_report::document::count;
 use serde_json::json;
@@ -24,10 +24,7 @@ pub fn run(args: &ClaimArgs) -> Outcome {
     let agent = zoo::find(&args.agent)?;
     let config = run_config(&agent).map_err(Failure::bad)?;
     let bytes = if agent.is_dir() {
-        if let Some(problem) = damaged_selection(&agent) {
-            note!("hasard: {problem}; the best candidate is taken");
-        }
-        export(&agent)
+        export_selected(&agent)
     } else {
         AgentFile::read_whole(&agent).map(|(bytes, _)| bytes)
     };

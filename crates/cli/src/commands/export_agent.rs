@@ -4,21 +4,27 @@ use crate::args::ExportAgentArgs;
 use crate::failure::{Failure, Outcome};
 use crate::places;
 use crate::zoo::ENDING;
+use hasard_learn::error::LearnError;
 use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
 use hasard_learn::runs::run_directory::damaged_selection;
 use hasard_media::files::WholeFile;
 use hasard_media::shell::quote;
 use serde_json::json;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+/// The file of the agent that a run selects; a line says so where the run's word on it is damaged.
+pub fn export_selected(run: &Path) -> Result<Vec<u8>, LearnError> {
+    if let Some(problem) = damaged_selection(run) {
+        note!("hasard: {problem}; the best candidate is taken");
+    }
+    export(run)
+}
 
 /// Runs the command.
 pub fn run(args: &ExportAgentArgs) -> Outcome {
     let run = places::run(args.run.as_os_str())?;
-    if let Some(problem) = damaged_selection(&run).filter(|_| !args.latest) {
-        note!("hasard: {problem}; the best candidate is taken");
-    }
-    let bytes = if args.latest { export_latest(&run) } else { export(&run) };
+    let bytes = if args.latest { export_latest(&run) } else { export_selected(&run) };
     let bytes = bytes.map_err(Failure::bad)?;
     let file = AgentFile::parse(&bytes).map_err(Failure::bad)?;
     let name = file.card.config.env.id.trim_end_matches("-v0");

@@ -9,12 +9,8 @@ impl TrainConfig {
     pub fn set_frames(&mut self, frames: u64) {
         self.frames = frames;
         if self.preset == Preset::Quick {
-            let reference = if self.all_tasks(|scenario| scenario.hits_late) {
-                slow_reference_budget(frames)
-            } else {
-                reference_budget(frames)
-            };
-            self.algorithm_settings.pid_reference_budget = Some(reference);
+            let slow = self.all_tasks(|scenario| scenario.hits_late);
+            self.algorithm_settings.pid_reference_budget = Some(reference_budget(frames, slow));
             let farther = frames >= LONG && self.all_tasks(|scenario| scenario.rewards_foresight);
             self.learning.final_gamma = farther.then_some(0.99);
             self.learning.final_gae_lambda = farther.then_some(0.95);
@@ -39,17 +35,12 @@ const LONG: u64 = 10_000_000;
 
 /// The reference budget of `quick`. What a multiplier has to become is a matter of the task, and a
 /// short run has few updates to get there: 450 for 2 million frames, less for longer ones, with the
-/// root of their length (docs/tried/levers.md).
-fn reference_budget(frames: u64) -> f64 {
-    (450.0 * (2_000_000.0 / frames.max(1) as f64).sqrt()).round().clamp(45.0, 450.0)
-}
-
-/// The same where a multiplier that comes too soon ends what an agent has yet to learn: a tenth of it
-/// from 10 million frames on (docs/tried/levers.md).
-fn slow_reference_budget(frames: u64) -> f64 {
+/// root of their length. Where a multiplier that comes too soon ends what an agent has yet to learn
+/// it is `slow`: 45, a tenth, for five times the frames (docs/tried/levers.md).
+fn reference_budget(frames: u64, slow: bool) -> f64 {
     let share = 2_000_000.0 / frames.max(1) as f64;
-    // A tenth at a fifth of the frames.
-    (450.0 * libm::pow(share, libm::log(10.0) / libm::log(5.0))).round().clamp(45.0, 450.0)
+    let less = if slow { libm::pow(share, libm::log(10.0) / libm::log(5.0)) } else { share.sqrt() };
+    (450.0 * less).round().clamp(45.0, 450.0)
 }
 
 /// Settings that learn within minutes.

@@ -138,8 +138,8 @@ pub struct ScenarioSpec {
     pub prompt: bool,
     /// Who has learned what follows soon returns more by looking further ahead.
     pub rewards_foresight: bool,
-    /// What an action earns or costs follows after a flight of some ten steps, and a budget is kept
-    /// by a policy that is long in the making.
+    /// What an action earns or costs follows some ten steps later, and a policy that keeps a budget
+    /// takes long to learn.
     pub hits_late: bool,
     /// Place in the paper's tables, from 0.
     pub paper_place: usize,
