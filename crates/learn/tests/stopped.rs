@@ -187,6 +187,39 @@ fn a_moved_run_leaves_what_is_in_its_place() {
     }
 }
 
+/// A run whose best candidate is damaged ends with the others, and says which it passed over.
+#[test]
+fn a_damaged_candidate_is_one_no_more() {
+    let path = tiny::directory("stopped-damaged");
+    let (summary, _) = train_until(Start::Fresh(config()), &path, 3);
+    assert!(summary.stopped);
+    let candidates = |path: &Path| {
+        let entries = fs::read_dir(path.join("checkpoints")).unwrap();
+        let mut found: Vec<_> = entries
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.to_str().unwrap().contains("best_"))
+            .collect();
+        found.sort();
+        found
+    };
+    let before = candidates(&path);
+    assert!(before.len() > 1, "{before:?}");
+    let weights = before[0].join("weights.safetensors");
+    let bytes = fs::read(&weights).unwrap();
+    fs::write(&weights, &bytes[..bytes.len() / 2]).unwrap();
+    let (result, _, warnings) = tiny::run(Start::RESUME, &path);
+    result.unwrap();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(
+        warnings[0].contains(before[0].file_name().unwrap().to_str().unwrap())
+            && warnings[0].contains("a candidate no more"),
+        "{warnings:?}"
+    );
+    let left = candidates(&path);
+    assert!(left.len() == 1 && left[0] != before[0], "{left:?}");
+    fs::remove_dir_all(path).unwrap();
+}
+
 /// A run that ended without an evaluation is evaluated when it is resumed and asked for one.
 #[test]
 fn a_finished_run_is_evaluated_when_that_is_asked_for() {

@@ -135,7 +135,9 @@ impl Begun {
         let owes = progress.is_some_and(|progress| progress.owes_evaluation);
         self.run.rewind(if owes { at.saturating_sub(1) } else { at }, at, hooks.warn)?;
         let none = || Ok(Candidates::default());
-        progress.map_or_else(none, |progress| Store::new(self.run.path(), 1).go_back_to(progress))
+        progress.map_or_else(none, |progress| {
+            Store::new(self.run.path(), 1).go_back_to(progress, hooks.warn)
+        })
     }
 
     /// The checkpoint that the run goes on from, if an evaluation of it is still to be made: it was

@@ -137,25 +137,49 @@ impl Store {
 
     /// Makes the directory agree with a checkpoint that the run goes on from, and gives its
     /// candidates so far: what a killed run left half-written goes, and so does what was a
-    /// candidate in a future that will not be.
-    pub fn go_back_to(&self, progress: &Progress) -> Result<Candidates, LearnError> {
+    /// candidate in a future that will not be. A damaged candidate is none: `warn` gets a line.
+    pub fn go_back_to(
+        &self,
+        progress: &Progress,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<Candidates, LearnError> {
         if let Ok(entries) = fs::read_dir(&self.directory) {
             let half = entries.filter_map(|entry| Some(entry.ok()?.path()));
             half.filter(|path| path.extension().is_some_and(|ending| ending == "partial"))
                 .try_for_each(|path| remove(&path))?;
         }
+        let whole: Vec<(PathBuf, Loaded)> = self
+            .numbered("best_")
+            .into_iter()
+            .filter_map(|path| match Loaded::read(&path) {
+                Ok(loaded) => Some((path, loaded)),
+                Err(error) => {
+                    warn(format!("{error}; it is a candidate no more"));
+                    None
+                }
+            })
+            .collect();
+        let is_whole = |frames| whole.iter().any(|(path, _)| *path == self.best_of(frames));
         let mut known = progress.all_candidates();
         let had_any = !known.ranked.is_empty();
-        known.ranked.retain(|one| self.best_of(one.frames).is_dir());
+        known.ranked.retain(|one| is_whole(one.frames));
         if known.ranked.is_empty()
             && had_any
-            && let Some(left) = self.numbered("best_").into_iter().next()
+            && let Some((_, left)) = whole.first()
         {
             // The newer checkpoints were damaged, but a candidate is whole: better than nothing.
-            known = Loaded::read(&left)?.progress.all_candidates();
-            known.ranked.retain(|one| self.best_of(one.frames).is_dir());
+            known = left.progress.all_candidates();
+            known.ranked.retain(|one| is_whole(one.frames));
         }
-        let kept: Vec<PathBuf> = known.ranked.iter().map(|one| self.best_of(one.frames)).collect();
+        let chosen = self.directory.parent().and_then(read_selection);
+        let chosen = chosen.map(|selection| selection.selected.frames);
+        let kept: Vec<PathBuf> = known
+            .ranked
+            .iter()
+            .map(|one| one.frames)
+            .chain(chosen)
+            .map(|frames| self.best_of(frames))
+            .collect();
         self.keep_only(&kept)?;
         Ok(known)
     }
