@@ -159,7 +159,7 @@ pub fn agent_of(policy: &OsStr) -> Result<Option<PathBuf>, Failure> {
     }
     let file =
         || Some(PathBuf::from(policy)).filter(|path| path.extension() == Some("agent".as_ref()));
-    Ok(zoo::after(policy, "run:").or_else(file))
+    zoo::after(policy, "run:").or_else(file).map(|run| zoo::find(run.as_os_str())).transpose()
 }
 
 /// What a command that films says of places: its maps are those that are played in, but its

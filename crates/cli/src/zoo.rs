@@ -19,6 +19,11 @@ fn folders() -> Vec<PathBuf> {
 /// The place of the agent that a text names: a path, or `zoo:NAME`; what is part of the program has
 /// the place `zoo:NAME`.
 pub fn find(text: &OsStr) -> Result<PathBuf, Failure> {
+    if text.is_empty() {
+        return Err(Failure::bad(
+            "an empty name names no agent; give a run's folder, an agent's file or zoo:NAME",
+        ));
+    }
     let Some(name) = after(text, PREFIX) else { return Ok(PathBuf::from(text)) };
     let (name, text) = (name.to_string_lossy(), text.to_string_lossy());
     let wanted = name.strip_suffix("-v0").unwrap_or(&name);

@@ -103,6 +103,9 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("sweep none.toml", &["none.toml"]),
         ("sweep mian", &["mian", "safety-bounds"]),
         ("sweep empty.toml", &["empty.toml", "`scenarios`"]),
+        ("sweep quick --option help --dry-run", &["--help", "leave them out"]),
+        ("sweep quick --frames 256 --out /proc/x", &["/proc/x: cannot be made", "--out DIR"]),
+        ("rollout RemedyRushLevel1-v0 --policy run:", &["an empty name", "zoo:NAME"]),
         ("verify none", &["none", "hasard claim"]),
         ("scoreboard none", &["none", "hasard claim"]),
         ("check task.toml#2", &["task.toml#2", "--level 2"]),
@@ -538,6 +541,7 @@ fn people_are_met_half_way() {
     let error = stderr("rollout RemedyRushLevel2 --policy zoo:ArmamentBurdenLevel1 --episodes 1");
     assert!(error.contains("there is no USE; play it in its own scenario"), "{error}");
     assert!(folder.ok("sweep quick --frames 1.5M --dry-run").contains("--frames 1500000"));
+    assert!(folder.ok("sweep human --dry-run --json").starts_with("{\"advice\":\""));
     folder.ok("contact-sheet RemedyRush");
     assert!(folder.0.join("sheets/remedy_rush_sheet.png").is_file());
 }

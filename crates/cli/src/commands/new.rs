@@ -48,6 +48,9 @@ pub fn run(args: &NewArgs) -> Outcome {
 fn taken_by_commands(path: &Path) -> Outcome {
     let name = path.to_string_lossy();
     let refused = |why: &str| Err(Failure::bad(format!("--out {name}: {why}")));
+    if path.to_str().is_none() {
+        return refused("a path that is no UTF-8 text names no task; choose another name");
+    }
     if name.starts_with('-') {
         return refused("a name that begins with - reads as a flag; put ./ before it");
     }
@@ -97,6 +100,12 @@ mod tests {
             let line = taken_by_commands(Path::new(path)).unwrap_err().line();
             assert!(line.contains(path) && line.contains(words), "{line}");
             assert!(!line.contains('\n'), "{line}");
+        }
+        #[cfg(unix)]
+        {
+            let path: &std::ffi::OsStr = std::os::unix::ffi::OsStrExt::from_bytes(b"a\xff.toml");
+            let line = taken_by_commands(Path::new(path)).unwrap_err().line();
+            assert!(line.contains("UTF-8"), "{line}");
         }
         for path in ["ok.toml", "./-x.toml", "deep/a-b.TOML"] {
             assert!(taken_by_commands(Path::new(path)).is_ok(), "{path}");

@@ -12,8 +12,10 @@ pub const LARGEST_TEXT: u64 = 256 << 10;
 /// Whether a text names a scenario's file rather than an id.
 #[must_use]
 pub fn is_file(text: &str) -> bool {
-    let path = text.rsplit_once('#').map_or(text, |(path, _)| path);
-    Path::new(path).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+    let ends_so = |path: &str| {
+        Path::new(path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
+    };
+    ends_so(text) || text.rsplit_once('#').is_some_and(|(path, _)| ends_so(path))
 }
 
 /// The text of a scenario's file, and of the maps that it names in other files.
@@ -83,4 +85,19 @@ pub fn changed(scenario: Scenario, began: &str, keeper: &str) -> Option<String> 
         let (path, was, is) = (file.path, file.hash, fingerprint(&now));
         format!("{path}: has changed since {began} ({was}, now {is}); the text that the {keeper} keeps is played")
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_file;
+
+    #[test]
+    fn a_number_sign_is_a_level_only_behind_the_ending() {
+        for text in ["task.toml", "task.TOML#2", "folder#2/task.toml", "folder#2/task.toml#3"] {
+            assert!(is_file(text), "{text}");
+        }
+        for text in ["RemedyRushLevel1-v0", "task#2", "toml", "folder.toml/map.wad"] {
+            assert!(!is_file(text), "{text}");
+        }
+    }
 }

@@ -129,7 +129,7 @@ impl NetworkShape {
         for convolution in &self.convolutions {
             if convolution.channels == 0 || !convolution.channels.is_multiple_of(32) {
                 return bad(format!(
-                    "convolution of {} channels: use a multiple of 32",
+                    "network.convolutions: {} channels; use a multiple of 32",
                     convolution.channels
                 ));
             }
@@ -138,7 +138,7 @@ impl NetworkShape {
                 || convolution.stride > convolution.kernel
             {
                 return bad(format!(
-                    "convolution with kernel {} and stride {}: use 1 <= stride <= kernel",
+                    "network.convolutions: kernel {} and stride {}; use 1 <= stride <= kernel",
                     convolution.kernel, convolution.stride
                 ));
             }
@@ -146,18 +146,20 @@ impl NetworkShape {
                 Some(next) => image = next,
                 None => {
                     return bad(format!(
-                        "kernel {} does not fit into an image of {}x{}: use larger frames or fewer convolutions",
+                        "network.convolutions: kernel {} does not fit into an image of {}x{}; use larger frames or fewer convolutions",
                         convolution.kernel, image.height, image.width
                     ));
                 }
             }
         }
         if self.dense.is_empty() {
-            return bad("a network needs at least one dense layer".into());
+            return bad("network.dense is empty; give at least one layer, such as [256]".into());
         }
         for units in self.dense.iter().chain(&self.recurrent) {
             if *units == 0 || !units.is_multiple_of(32) {
-                return bad(format!("layer of {units} units: use a multiple of 32"));
+                return bad(format!(
+                    "network.dense and network.recurrent: {units} units; use a multiple of 32"
+                ));
             }
         }
         if self.heads.is_empty() || self.heads.contains(&0) {

@@ -33,7 +33,11 @@ pub fn run(args: &SweepArgs) -> Outcome {
         )));
     }
     if let Some(advice) = args.what.to_str().and_then(paper::advice) {
-        say!("{advice}");
+        if args.json {
+            say!("{}", json!({ "advice": advice }));
+        } else {
+            say!("{advice}");
+        }
         return Ok(());
     }
     let Described { mut sweep, chooses_frames } = description(&args.what)?;
@@ -64,6 +68,7 @@ pub fn run(args: &SweepArgs) -> Outcome {
     if args.dry_run {
         return list(args, &pairs, sweep.parallel);
     }
+    can_be_made(&sweep.out)?;
     if !args.json {
         note!("hasard: measuring for some seconds how fast this machine is");
     }
@@ -87,6 +92,22 @@ pub fn run(args: &SweepArgs) -> Outcome {
     }
     let (jobs, rate) = (pairs.into_iter().map(|(job, _)| job).collect::<Vec<_>>(), plan.rate);
     execute(args, &sweep, &jobs, rate)
+}
+
+/// Refuses a folder of runs that cannot be made; nothing of it is left.
+fn can_be_made(out: &Path) -> Outcome {
+    let missing: Vec<&Path> = out.ancestors().take_while(|path| !path.exists()).collect();
+    let made = std::fs::create_dir_all(out);
+    for path in missing {
+        // What another program has put there meanwhile stays.
+        std::fs::remove_dir(path).ok();
+    }
+    made.map_err(|error| {
+        Failure::bad(format!(
+            "{}: cannot be made: {error}; choose another `out`, here with --out DIR",
+            out.display()
+        ))
+    })
 }
 
 /// Refuses a run whose folder cannot be made.
@@ -267,6 +288,7 @@ fn list(args: &SweepArgs, pairs: &[(Job, TrainConfig)], parallel: usize) -> Outc
     }
     if !args.json {
         // Beside the lines, which a script may run.
+        note!("hasard: measuring for some seconds how fast this machine is");
         note!("hasard: {}", Plan::of(pairs, parallel, true)?.line());
     }
     Ok(())

@@ -5,6 +5,7 @@ use crate::args::{Cli, Command};
 use crate::commands::init_from::of_job;
 use crate::commands::train_settings::fresh;
 use crate::failure::Failure;
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches};
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
 use hasard_sweep::Job;
@@ -13,7 +14,12 @@ use hasard_sweep::Job;
 pub fn settings(job: &Job) -> Result<TrainConfig, Failure> {
     let line = std::iter::once("hasard".into()).chain(job.arguments.iter().cloned());
     let named = |why: &str| Failure::bad(format!("{}: {why}", job.command_line("hasard")));
-    let wrong = |error: clap::Error| named(&crate::failure::usage_line(&error));
+    let wrong = |error: clap::Error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            named("help and version are no options of a training; leave them out")
+        }
+        _ => named(&crate::failure::usage_line(&error)),
+    };
     let typed = Cli::command().try_get_matches_from(line).map_err(wrong)?;
     match (Cli::from_arg_matches(&typed).map_err(wrong)?.command, typed.subcommand()) {
         (Command::Train(args), Some((_, typed))) => {
