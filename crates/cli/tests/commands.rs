@@ -84,6 +84,8 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("replay empty", &["empty"]),
         ("replay binary.episode", &["binary.episode"]),
         ("replay none.episode", &["none.episode"]),
+        ("replay none.episode --beside depth", &["--beside", "give an --out"]),
+        ("replay none.episode -o a.png --quality 80", &["--quality", "leave it out"]),
         ("rollout RemedyRushLevel1-v0 --episodes 0", &["--episodes"]),
         ("rollout RemedyRushLevel1-v0 --seed -1", &["'-1'", "--seed", "a whole number, 0 or more"]),
         ("train RemedyRushLevel1-v0 --frames -5 --out new", &["-5", "--frames"]),

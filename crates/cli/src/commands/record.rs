@@ -197,6 +197,15 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
             "--step: is for a single picture; give an --out that ends in .png",
         ));
     }
+    if let Some(flag) = without_use(args, kind) {
+        return Err(Failure::bad(format!(
+            "{flag}: is for what --out writes; {}",
+            match kind {
+                None => "give an --out that ends in .mp4, .gif or .png",
+                Some(_) => "a .png is one picture, so leave it out",
+            }
+        )));
+    }
     let mut replay = open(&args.file, &looks)?;
     let usual = if args.out.as_deref().is_some_and(is_gif) {
         GIF_SIZE
@@ -229,6 +238,19 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
         }
     }
     compared(&replay, &args.file)
+}
+
+/// A flag of films or pictures that changes nothing of what is written.
+fn without_use(args: &ReplayArgs, kind: Option<Kind>) -> Option<&'static str> {
+    let (film, written) = (kind == Some(Kind::Film), kind.is_some());
+    [
+        ("--size", args.size.is_some() && !written),
+        ("--beside", !args.film.beside.is_empty() && !written),
+        ("--frame-every", args.film.frame_every.is_some() && !film),
+        ("--quality", args.film.quality.is_some() && !film),
+    ]
+    .into_iter()
+    .find_map(|(flag, without)| without.then_some(flag))
 }
 
 fn open(file: &Path, looks: &EnvOptions) -> Result<Replay, Failure> {
