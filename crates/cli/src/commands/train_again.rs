@@ -2,11 +2,11 @@
 
 use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
 use hasard_media::shell::quote;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::Path;
 
-/// The command that begins a run with these settings, but for those of machine, reports and
-/// evaluations.
+/// The command that trains and selects the same agent: all settings but those of machine and
+/// reports.
 pub fn command(config: &TrainConfig) -> String {
     let (env, usual) = (&config.env, EnvConfig::new(&config.env.id));
     // A task of the user's is named by its file.
@@ -84,11 +84,22 @@ pub fn command(config: &TrainConfig) -> String {
                 }
                 "sampling.synchronous" => words.push("--async".into()),
                 "learning.portable" => words.push("--portable".into()),
-                _ => words.push(format!("--set {}", quote(Path::new(&format!("{name}={value}"))))),
+                _ => words.push(set(&name, &value)),
             }
         }
+        // They change no step of the training, but which of its checkpoints is selected.
+        let (usual, own) = (json!(plain.evaluation), json!(config.evaluation));
+        let own = own.as_object().into_iter().flatten();
+        words.extend(
+            own.filter(|(name, value)| usual.get(name) != Some(value))
+                .map(|(name, value)| set(&format!("evaluation.{name}"), value)),
+        );
     }
     words.join(" ")
+}
+
+fn set(name: &str, value: &Value) -> String {
+    format!("--set {}", quote(Path::new(&format!("{name}={value}"))))
 }
 
 #[cfg(test)]
@@ -107,13 +118,16 @@ mod tests {
             "--safety-budget 7.5 --observation segmented --size 64x48 --envs 8 --frame-stack 2",
             "--safety-budget 50 --safety-budget zone_visits=2 --constraint-statistic cvar:0.1",
             "--curriculum 1,2,3 --frames 3000 --set learning.gamma=0.5 --set network.dense=[32,16]",
+            "--eval-every 500 --set evaluation.candidates=3 --set evaluation.surely=false",
             "--set learning.rate=0.001 --set learning.products=bfloat16 --set algorithm_settings.pid_gains=[1,0.5,0]",
         ] {
             let wanted = config(line).unwrap().begun();
             let words = command(&wanted);
             // A curriculum is of a scenario: the level that its last lesson leaves there is as good.
             let again = config(&words.split_once("-v0").unwrap().1.replace('\'', ""));
-            assert_eq!(again.unwrap().begun().all_unlike(&wanted), [], "{line}: {words}");
+            let again = again.unwrap().begun();
+            assert_eq!(again.all_unlike(&wanted), [], "{line}: {words}");
+            assert_eq!(json!(again.evaluation), json!(wanted.evaluation), "{line}: {words}");
         }
     }
 }
