@@ -147,8 +147,9 @@ mod tests {
     use crate::algorithms::{ppo, small};
     use crate::config::AlgorithmKind;
 
-    /// A16. Algorithm 1 of FOCOPS ends its passes when the mean of KL(pi, pi_k) over the batch, of
-    /// the policy as it is after the pass, is beyond delta. Divergences after 1, 2, ... passes are
+    /// A16. Algorithm 1 of FOCOPS ends its passes when the mean divergence over the batch, of the
+    /// policy as it is after the pass, is beyond delta; here it is KL(pi_k, pi), that of every
+    /// algorithm's `target_kl`, which equals FOCOPS' KL(pi, pi_k) to second order. Divergences after 1, 2, ... passes are
     /// taken from runs of so many; a target between those of two passes ends at the later of them,
     /// one pass before what was noted ahead of each step would.
     #[test]

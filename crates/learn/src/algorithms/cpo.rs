@@ -5,7 +5,7 @@
 //! lowers the cost fastest. A line search then verifies reward, cost and divergence. With several
 //! constraints the one furthest above its budget rules the step.
 
-use crate::algorithms::surrogate::{centred, standardised};
+use crate::algorithms::surrogate::{standardised, standardised_by};
 use crate::algorithms::trust_region::{TrustRegion, train_critics};
 use crate::algorithms::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
@@ -79,9 +79,9 @@ impl Plane {
             return Weights { reward: 0.0, cost: (2.0 * radius / s).sqrt(), recovery: true };
         }
         // The edge of the budget crosses the trust region. The dual is maximised over the two
-        // stretches of its multiplier lambda on which that of the cost, nu = max(0, (lambda c + r)
+        // stretches of its multiplier lambda on which that of the cost, nu = max(0, (lambda c - r)
         // / s), is positive or zero. (Signs: g is minimised here, so a move -H^-1 g that lowers the
-        // cost has r > 0.)
+        // cost has r > 0; the paper's r has the other sign.)
         let a = (q - r * r / s).max(0.0);
         let (bounded, unbounded) = ((a / room.max(1e-12)).sqrt(), (q / (2.0 * radius)).sqrt());
         let nu = |lambda: f64| ((lambda * c - r) / s).max(0.0);
@@ -128,7 +128,10 @@ impl Algorithm for Cpo {
         let worst = (0..signals.len())
             .max_by(|&a, &b| relative(&signals[a]).total_cmp(&relative(&signals[b])));
         let advantages = standardised(minibatch.advantages(), &self.settings);
-        let costs = centred(&minibatch.costs()[worst.unwrap_or(0)].advantages);
+        // In the unit of their own deviation, and so is the excess: theorem 2 holds in any unit,
+        // and what counts as nothing below is so few of these.
+        let (costs, unit) =
+            standardised_by(&minibatch.costs()[worst.unwrap_or(0)].advantages, 0.0);
         let reward_loss = |heads: &Heads| -> Loss {
             heads.mean([&heads.ratio], |row, [ratio]| -(ratio * advantages[row]))
         };
@@ -146,7 +149,8 @@ impl Algorithm for Cpo {
             region.solve(learner, &mut origin, &b).direction,
         );
         // Nothing is known yet: as if there were no budget.
-        let excess = worst.map_or(f64::NEG_INFINITY, |index| surrogate_excess(&signals[index]));
+        let excess =
+            worst.map_or(f64::NEG_INFINITY, |index| surrogate_excess(&signals[index]) / unit);
         let vectors = learner.vectors();
         let product = |a: &[f32], b: &[f32]| vectors.dot(a, b);
         let plane = Plane {
@@ -266,6 +270,39 @@ mod tests {
                     "episodes of {lengths:?} steps: from {cost} to {after}, budget 50"
                 );
             }
+        }
+    }
+
+    /// Theorem 2 in another unit: costs of a ten-thousandth, and a budget of as much less, make the
+    /// same step, within the budget and above it.
+    #[test]
+    fn a_step_does_not_depend_on_the_unit_of_costs() {
+        use crate::algorithms::small;
+        use crate::config::AlgorithmKind;
+        let step = |unit: f64, cost: f64| {
+            let config = small::config(AlgorithmKind::Cpo);
+            let (mut learner, rollout) = small::learner(&config);
+            let prepared = learner.prepare(&rollout);
+            let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
+            let outputs =
+                learner.policy_outputs(&mut minibatch.batch, &learner.policy_parameters());
+            let action = &learner.shape().action;
+            minibatch.old_policy =
+                crate::learning::policy::Policy::new(action, &outputs, action.parameters());
+            minibatch.critics[1].advantages.iter_mut().for_each(|cost| *cost *= unit as f32);
+            let signal = Signal::steady(cost * unit, 50.0 * unit, 525.0);
+            let before = learner.policy_parameters();
+            let mut means = Means::default();
+            Cpo::new(&config).update(&mut learner, &mut minibatch, &[signal], &mut means).unwrap();
+            assert!(means.get("step_share").unwrap() > 0.0, "{unit}, {cost}: stands still");
+            let after = learner.policy_parameters();
+            after.iter().zip(before).map(|(new, old)| new - old).collect::<Vec<f32>>()
+        };
+        for cost in [40.0, 49.0, 60.0, 500.0] {
+            let (usual, small) = (step(1.0, cost), step(1e-4, cost));
+            let size = |step: &[f32]| step.iter().map(|x| f64::from(x * x)).sum::<f64>().sqrt();
+            let apart: Vec<f32> = usual.iter().zip(&small).map(|(a, b)| a - b).collect();
+            assert!(size(&apart) < 1e-3 * size(&usual), "{cost}: {}", size(&apart) / size(&usual));
         }
     }
 

@@ -166,8 +166,8 @@ mod tests {
         assert_eq!(above.optimisers.iter().map(|adam| adam.steps).collect::<Vec<_>>(), [6, 6]);
     }
 
-    /// A3. The projection's step is as short as the first (algorithm 1 of the paper's appendix
-    /// stops both by the divergence of the policy that each begins with): it ends when KL(halfway,
+    /// A3. The projection's step is as short as the first (each stops by its
+    /// divergence from the policy that it begins with, as in OmniSafe): it ends when KL(halfway,
     /// new) is beyond the target, with a pass to spare or with none.
     #[test]
     fn the_second_step_stops_at_its_own_divergence() {

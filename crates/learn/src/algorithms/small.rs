@@ -29,6 +29,11 @@ pub fn config(algorithm: AlgorithmKind) -> TrainConfig {
 
 /// A learner, and a rollout whose actions its own distribution drew.
 pub fn learner(config: &TrainConfig) -> (Learner, Rollout) {
+    learner_on(Simd::PLAIN, config)
+}
+
+/// The same by other kernels.
+pub fn learner_on(kernels: Simd, config: &TrainConfig) -> (Learner, Rollout) {
     let image = ImageShape { height: 2, width: 3, channels: 1 };
     let action = ActionShape { sizes: vec![3, 2], deltas: 1 };
     let cost_critics =
@@ -37,7 +42,7 @@ pub fn learner(config: &TrainConfig) -> (Learner, Rollout) {
     let shape = ModelShape::new(image, action, cost_critics, 0, &config.network)
         .and_then(|shape| shape.with_auxiliary(auxiliary.outputs()))
         .unwrap();
-    let learner = Learner::new(config, &shape, &ComputeDevice::Processor(Simd::PLAIN));
+    let learner = Learner::new(config, &shape, &ComputeDevice::Processor(kernels));
     let mut stream = Stream::new(3, Purpose::Evaluation, 0, 0);
     let mut part = Part { initial_state: shape.zero_state(LANES), ..Part::default() };
     part.prepare(&shape, STEPS, LANES, 1, config.constraints.len());

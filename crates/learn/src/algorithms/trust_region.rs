@@ -73,10 +73,10 @@ impl TrustRegion {
         let parameters = learner.policy_parameters();
         let lanes = minibatch.batch.sequences.lanes;
         let count = ((lanes as f64 * self.fraction).round() as usize).clamp(1, lanes);
-        // Spread over all lanes; which ones does not matter, for each is in another episode.
+        // Spread over all lanes and episodes.
         let sampled: Vec<usize> = (0..count).map(|index| index * lanes / count).collect();
         let mut sample = minibatch.batch.of_lanes(learner.shape(), &sampled);
-        let sample_outputs = learner.present_outputs(&mut sample);
+        let sample_outputs = learner.fisher_outputs(&mut sample, &parameters);
         let action = &learner.shape().action;
         let sample_policy = Policy::new(action, &sample_outputs, action.parameters());
         let outputs = learner.present_outputs(&mut minibatch.batch);
@@ -118,7 +118,7 @@ impl TrustRegion {
         let step = DIFFERENCE / norm;
         // What will hold the product holds the parameters a little way off first.
         vectors.set_sum(product, &origin.parameters, step, vector);
-        let moved = learner.policy_outputs(&mut origin.sample, product);
+        let moved = learner.fisher_outputs(&mut origin.sample, product);
         let change: Vec<f32> = moved
             .iter()
             .zip(&origin.sample_outputs)
@@ -127,7 +127,7 @@ impl TrustRegion {
         let mut rows = origin.sample_policy.fisher_times(&change);
         let count = origin.sample.sequences.rows() as f32;
         rows.iter_mut().for_each(|value| *value /= count);
-        learner.policy_backward(&mut origin.sample, &rows, product);
+        learner.fisher_backward(&mut origin.sample, &rows, product);
         vectors.add_scaled(product, self.damping, vector);
     }
 

@@ -5,7 +5,6 @@
 //! The paper keeps all rollouts since the last phase for it; here it goes through the latest alone,
 //! whose pictures are at hand. Its targets are those of the rollout.
 
-use crate::algorithms::algorithm::go_through;
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::learning::epochs::Epochs;
@@ -33,26 +32,24 @@ pub fn value_phase(
     let epochs = Epochs::of_values(config, rollouts, count);
     let networks = learner.shape().networks.len();
     let clone = learning.value_phase_clone;
-    let made =
-        go_through(learner, rollout, None, &epochs, means, |learner, rollout, some, means| {
-            let rows =
-                (0..steps).flat_map(|step| some.iter().map(move |number| step * count + number));
-            let before = before.of_rows(rows);
-            let mut minibatch = learner.minibatch(rollout, some);
-            let mut noted = Means::default();
-            learner.descend_networks(
-                0..networks,
-                0,
-                &mut minibatch,
-                |heads, batch, means| loss(&before, clone, heads, batch, means),
-                &mut noted,
-            )?;
-            for name in ["value_phase_loss", "value_phase_divergence"] {
-                noted.get(name).into_iter().for_each(|value| means.add(name, value));
-            }
-            Ok(())
-        })?;
-    means.add("value_phase_epochs", f64::from(made));
+    // Not by `go_through`, which may estimate targets anew.
+    for some in (0..epochs.count).flat_map(|epoch| epochs.minibatches(epoch)) {
+        let rows = (0..steps).flat_map(|step| some.iter().map(move |number| step * count + number));
+        let before = before.of_rows(rows);
+        let mut minibatch = learner.minibatch(rollout, &some);
+        let mut noted = Means::default();
+        learner.descend_networks(
+            0..networks,
+            0,
+            &mut minibatch,
+            |heads, batch, means| loss(&before, clone, heads, batch, means),
+            &mut noted,
+        )?;
+        for name in ["value_phase_loss", "value_phase_divergence"] {
+            noted.get(name).into_iter().for_each(|value| means.add(name, value));
+        }
+    }
+    means.add("value_phase_epochs", epochs.count as f64);
     Ok(())
 }
 
@@ -114,5 +111,22 @@ mod tests {
         assert_eq!(passes, 40.0);
         assert!(error < 0.8 * one, "{error} after 40 passes, {one} after one");
         assert!(near < 0.5 * far && far > 1e-5, "{near} with the second term, {far} without");
+    }
+
+    /// V_targ of the paper's equation 2 is that of the rollout, also where passes of the policy
+    /// estimate theirs anew.
+    #[test]
+    fn its_targets_are_those_of_the_rollout() {
+        let after = |anew: bool| {
+            let mut config = small::config(AlgorithmKind::PpoLag);
+            config.learning.value_phase = Some(1);
+            config.learning.value_phase_passes = 3;
+            config.learning.recompute_advantages = anew;
+            let (mut learner, rollout) = small::learner(&config);
+            let prepared = learner.prepare(&rollout);
+            value_phase(&config, &mut learner, &prepared, 0, &mut Means::default()).unwrap();
+            learner.parameters
+        };
+        assert_eq!(after(true), after(false));
     }
 }

@@ -29,7 +29,7 @@ names! {
         Cpo = "CPO",
         /// First-order constrained optimisation in policy space.
         Focops = "FOCOPS",
-        /// Conservative update policy.
+        /// Constrained update projection.
         Cup = "CUP",
         /// Interior-point policy optimisation.
         Ipo = "IPO",

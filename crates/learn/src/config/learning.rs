@@ -18,7 +18,8 @@ names! {
     /// What critics see and the policy does not (Pinto et al. 2018, arXiv 1710.06542): nothing acts
     /// by it, so that an agent needs none of it once it is trained.
     CriticInput ("input of the critics") {
-        /// What is left of the time of the episode, discounted as returns are. A time limit that is
+        /// What is left of the time of the episode, discounted as returns are, at the end of a
+        /// schedule; a second number for costs with a discount of their own. A time limit that is
         /// not seen makes the value of one and the same picture another at every step (Pardo et al.
         /// 2018, arXiv 1712.00378).
         TimeLeft = "time-left",

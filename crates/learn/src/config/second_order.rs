@@ -6,7 +6,7 @@ use crate::config::{Preset, TrainConfig};
 ///
 /// A second-order step trusts its sample: a Fisher matrix of a hundred steps, or advantages of a
 /// thousand, are an accident of these, and a line search that asks the same sample cannot see it.
-/// OmniSafe takes 20,000 samples a step, TRPO's paper 50,000.
+/// OmniSafe takes 20,000 samples a step, TRPO's paper 50,000 and more.
 const STEPS: usize = 512;
 
 /// Steps that gradients flow back through, as everywhere in the benchmark. It also bounds the

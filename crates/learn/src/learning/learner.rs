@@ -55,6 +55,8 @@ pub struct Learner {
     auxiliary: Auxiliary,
     /// What computes everything but the networks on a card.
     kernels: Simd,
+    /// The policy network in float32 where products are rounded, for [`Learner::fisher_outputs`].
+    fisher: Option<Stack>,
     gradient: Vec<f32>,
     /// Which networks do not hold the present parameters.
     stale: Vec<bool>,
@@ -78,15 +80,22 @@ impl Learner {
             .collect();
         // The policy is the first head of the first network, at the front of the vector.
         shape.networks[0].scale_head(0, config.network.policy_scale as f32, &mut parameters);
+        let stack = |shape: &ModelShape, device: &ComputeDevice| {
+            let whole = Stack::new(shape, device, config.learning.threads);
+            match (config.learning.recurrence, device.is_card()) {
+                (Some(_), _) => whole.in_parts(MOST_ROWS),
+                (None, true) => whole.in_parts(MOST_ROWS_ON_A_CARD),
+                (None, false) => whole,
+            }
+        };
         Learner {
-            networks: {
-                let whole = Stack::new(shape, device, config.learning.threads);
-                match (config.learning.recurrence, device.is_card()) {
-                    (Some(_), _) => whole.in_parts(MOST_ROWS),
-                    (None, true) => whole.in_parts(MOST_ROWS_ON_A_CARD),
-                    (None, false) => whole,
-                }
-            },
+            networks: stack(shape, device),
+            fisher: device.unrounded().filter(|_| config.algorithm.is_second_order()).map(
+                |unrounded| {
+                    let policy = vec![shape.networks[0].clone()];
+                    stack(&ModelShape { networks: policy, ..shape.clone() }, &unrounded)
+                },
+            ),
             optimisers: std::iter::repeat_n(&shape.networks, config.algorithm.optimisers())
                 .flatten()
                 .map(|network| Adam::new(network.parameter_count()))
@@ -113,6 +122,9 @@ impl Learner {
     pub fn join(&mut self, team: &Team) {
         if !team.is_alone() {
             self.networks.share(team);
+            if let Some(fisher) = &mut self.fisher {
+                fisher.share(team);
+            }
             self.team = team.clone();
         }
     }
@@ -347,6 +359,30 @@ impl Learner {
         gradient: &mut [f32],
     ) {
         self.networks.backward_network(0, batch, rows, gradient);
+    }
+
+    /// Policy outputs under parameters of the policy network, in float32 whatever the run's
+    /// products: differences of outputs a little way apart are what rounding leaves nothing of.
+    pub fn fisher_outputs(
+        &mut self,
+        batch: &mut ModelSequences<'_>,
+        parameters: &[f32],
+    ) -> Vec<f32> {
+        let Some(fisher) = &mut self.fisher else { return self.policy_outputs(batch, parameters) };
+        fisher.load_pixels(&self.pixels.scale());
+        fisher.load_network(0, parameters);
+        fisher.forward_network(0, batch)
+    }
+
+    /// The gradient from that of the outputs of the last [`Learner::fisher_outputs`].
+    pub fn fisher_backward(
+        &mut self,
+        batch: &mut ModelSequences<'_>,
+        rows: &[f32],
+        gradient: &mut [f32],
+    ) {
+        let network = self.fisher.as_mut().unwrap_or(&mut self.networks);
+        network.backward_network(0, batch, rows, gradient);
     }
 
     /// Replaces the policy network's parameters.

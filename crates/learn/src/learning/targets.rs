@@ -17,6 +17,8 @@ pub struct Prepared<'a> {
     pub targets: Vec<Vec<f32>>,
     /// Normalised values of each critic when the actions were taken.
     pub old_values: Vec<Vec<f32>>,
+    /// Share of the variance of each critic's returns that its values explain.
+    explained: Vec<f64>,
     /// Mean cost of each constraint per step.
     pub mean_costs: Vec<f64>,
     /// What the values of each critic were normalised by when the actions were taken.
@@ -24,24 +26,26 @@ pub struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
-    /// Share of the variance of each critic's targets that its values explain: 1 is perfect, 0 no
+    /// Share of the variance of each critic's returns that its values explain: 1 is perfect, 0 no
     /// better than their mean.
     #[must_use]
     pub fn explained_variances(&self, config: &TrainConfig) -> Vec<(String, f64)> {
-        let variance = |values: &mut dyn Iterator<Item = f64>| {
-            let (count, sum, squares) =
-                values.fold((0.0, 0.0, 0.0), |(n, s, q), v| (n + 1.0, s + v, q + v * v));
-            squares / count - (sum / count) * (sum / count)
+        let named = |(critic, &share): (usize, &f64)| {
+            (critic_name("explained_variance", config, critic), share)
         };
-        let share = |(critic, (targets, values)): (usize, (&Vec<f32>, &Vec<f32>))| {
-            let all = variance(&mut targets.iter().map(|&target| f64::from(target)));
-            let rest = variance(
-                &mut targets.iter().zip(values).map(|(target, value)| f64::from(target - value)),
-            );
-            (critic_name("explained_variance", config, critic), 1.0 - rest / all)
-        };
-        self.targets.iter().zip(&self.old_values).enumerate().map(share).collect()
+        self.explained.iter().enumerate().map(named).collect()
     }
+}
+
+/// The share of the variance of returns that the values explain: what they leave is the advantages,
+/// in the same unit.
+fn explained(returns: &[f32], advantages: &[f32]) -> f64 {
+    let variance = |values: &[f32]| {
+        let count = values.len() as f64;
+        let mean = values.iter().map(|&value| f64::from(value)).sum::<f64>() / count;
+        values.iter().map(|&value| (f64::from(value) - mean).powi(2)).sum::<f64>() / count
+    };
+    1.0 - variance(advantages) / variance(returns)
 }
 
 /// What a number of a critic is called in reports: that of a cost says so, that of a named cost
@@ -95,6 +99,7 @@ pub(crate) fn prepare<'a>(
         advantages: Vec::new(),
         targets: Vec::new(),
         old_values: Vec::new(),
+        explained: Vec::new(),
         mean_costs: vec![0.0; constraints],
         acted_by: Vec::new(),
     };
@@ -123,6 +128,7 @@ pub(crate) fn prepare<'a>(
             moments.update(&returns);
         }
         prepared.targets.push(normalised(&returns, moments, config));
+        prepared.explained.push(explained(&returns, &advantages));
         prepared.advantages.push(advantages);
         prepared.old_values.push(old_values);
     }
@@ -156,6 +162,7 @@ pub(crate) fn prepare_anew<'a>(
         advantages,
         targets,
         old_values: prepared.old_values.clone(),
+        explained: prepared.explained.clone(),
         mean_costs: prepared.mean_costs.clone(),
         acted_by: prepared.acted_by.clone(),
     }
@@ -226,4 +233,21 @@ fn estimates(
         }
     }
     (advantages, returns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::explained;
+
+    /// By hand: returns of variance 1/4; values that are all 1/10 off explain them wholly, those
+    /// that leave a variance of 1/16 three quarters, their mean nothing.
+    #[test]
+    fn what_values_leave_is_not_explained() {
+        let returns = [0.0, 1.0, 0.0, 1.0];
+        for (advantages, share) in
+            [([0.1; 4], 1.0), ([0.25, -0.25, 0.25, -0.25], 0.75), ([-0.5, 0.5, -0.5, 0.5], 0.0)]
+        {
+            assert!((explained(&returns, &advantages) - share).abs() < 1e-6, "{share}");
+        }
+    }
 }

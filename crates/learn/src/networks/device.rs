@@ -53,6 +53,13 @@ impl ComputeDevice {
         }
     }
 
+    /// The same in float32, if its products are rounded; `None` if they are not.
+    #[must_use]
+    pub fn unrounded(&self) -> Option<ComputeDevice> {
+        let rounds = !self.is_card() && self.kernels().family().rounds();
+        rounds.then(|| ComputeDevice::Processor(Simd::widest()))
+    }
+
     /// Whether it is a device of its own, beside the processor.
     #[must_use]
     pub fn is_card(&self) -> bool {

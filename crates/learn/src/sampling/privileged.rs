@@ -10,7 +10,8 @@ use crate::config::{CriticInput, TrainConfig};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Privileged {
     inputs: Vec<CriticInput>,
-    gamma: f64,
+    /// Of the reward's returns, and of those of the costs where they have another.
+    discounts: Vec<f64>,
     episode_steps: u32,
     budgets: Vec<f64>,
 }
@@ -22,9 +23,12 @@ impl Privileged {
     /// What a run's critics see.
     #[must_use]
     pub fn new(config: &TrainConfig) -> Privileged {
+        // Where the discount grows, the last one: a number that moved would be another input.
+        let learning = &config.learning;
+        let last = learning.final_gamma.unwrap_or(learning.gamma);
         Privileged {
-            inputs: config.learning.critic_inputs.clone(),
-            gamma: config.learning.gamma,
+            inputs: learning.critic_inputs.clone(),
+            discounts: std::iter::once(last).chain(learning.cost_gamma).collect(),
             episode_steps: config.episode_steps,
             budgets: config.constraints.iter().map(|constraint| constraint.budget).collect(),
         }
@@ -34,7 +38,7 @@ impl Privileged {
     #[must_use]
     pub fn count(&self) -> usize {
         let one = |input: &CriticInput| match input {
-            CriticInput::TimeLeft => 1,
+            CriticInput::TimeLeft => self.discounts.len(),
             CriticInput::BudgetSpent => self.budgets.len(),
             CriticInput::Health | CriticInput::Ammunition => 1,
             CriticInput::Position => 7,
@@ -63,8 +67,10 @@ impl Privileged {
             let count;
             match input {
                 CriticInput::TimeLeft => {
-                    count = 1;
-                    row[0] = (self.share_left(age) - 1.0) as f32;
+                    count = self.discounts.len();
+                    for (number, &gamma) in row.iter_mut().zip(&self.discounts) {
+                        *number = (self.share_left(age, gamma) - 1.0) as f32;
+                    }
                 }
                 CriticInput::BudgetSpent => {
                     count = self.budgets.len();
@@ -99,11 +105,11 @@ impl Privileged {
 
     /// The share that is left of an episode's time, each step discounted: what something that comes
     /// at a steady rate is still worth, in units of what it is worth at the start.
-    fn share_left(&self, age: u32) -> f64 {
+    fn share_left(&self, age: u32, gamma: f64) -> f64 {
         let left = |age: u32| {
             let steps = f64::from(self.episode_steps.saturating_sub(age));
-            if self.gamma < 1.0 {
-                (1.0 - libm::pow(self.gamma, steps)) / (1.0 - self.gamma)
+            if gamma < 1.0 {
+                (1.0 - libm::pow(gamma, steps)) / (1.0 - gamma)
             } else {
                 steps
             }
@@ -129,26 +135,39 @@ mod tests {
 
     /// A11. A cost of c at every step until the limit T is worth c (1 - gamma^(T - t)) / (1 -
     /// gamma) at step t (the sum of a geometric series): a value of that form is linear in the
-    /// input.
+    /// input, under the discount of rewards, the last one of a schedule, and under that of costs.
     #[test]
     fn a_steady_cost_is_linear_in_the_time_left() {
-        for gamma in [0.99, 0.9, 1.0] {
+        for (gamma, final_gamma, cost_gamma) in [
+            (0.99, None, None),
+            (0.9, None, None),
+            (1.0, None, None),
+            (0.97, Some(0.99), None),
+            (0.97, None, Some(1.0)),
+        ] {
             let mut config =
                 TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
             config.learning.gamma = gamma;
+            (config.learning.final_gamma, config.learning.cost_gamma) = (final_gamma, cost_gamma);
             config.learning.critic_inputs = vec![CriticInput::TimeLeft];
             let privileged = Privileged::new(&config);
+            let discounts: Vec<f64> =
+                std::iter::once(final_gamma.unwrap_or(gamma)).chain(cost_gamma).collect();
+            assert_eq!(privileged.count(), discounts.len());
             let steps = config.episode_steps;
-            let to_come =
-                |age: u32| (0..steps - age).map(|step| 0.3 * gamma.powi(step as i32)).sum::<f64>();
             for age in [0, 1, 100, 400, 524, 525] {
-                let mut seen = [9.0];
+                let mut seen = vec![9.0; discounts.len()];
                 privileged.write(age, &[], Insight::default(), &[], &mut seen);
-                let value = to_come(0) * (1.0 + f64::from(seen[0]));
-                assert!(
-                    (value - to_come(age)).abs() < 1e-4 * to_come(0),
-                    "gamma {gamma}, step {age}: {value}"
-                );
+                for (gamma, seen) in discounts.iter().zip(&seen) {
+                    let to_come = |age: u32| {
+                        (0..steps - age).map(|step| 0.3 * gamma.powi(step as i32)).sum::<f64>()
+                    };
+                    let value = to_come(0) * (1.0 + f64::from(*seen));
+                    assert!(
+                        (value - to_come(age)).abs() < 1e-4 * to_come(0),
+                        "gamma {gamma}, step {age}: {value}"
+                    );
+                }
             }
         }
     }

@@ -2,6 +2,7 @@ use super::*;
 use crate::algorithms::small;
 use crate::config::AlgorithmKind;
 use crate::random::{Purpose, Stream};
+use hasard_engine::simd::Simd;
 
 /// The product against the dense Fisher matrix by its definition: the mean over samples and
 /// actions of the outer product of the gradient of the log-probability, gradients by the
@@ -88,6 +89,37 @@ fn fisher_products_equal_those_of_the_dense_matrix() {
     let (rest, all) = (squares(&back, &b), squares(&b, &vec![0.0; count]));
     assert!(rest < 1e-3 * all, "{rest} of {all}");
     assert!(squares(&back, &x.product) < 1e-3 * all, "the product that is reported");
+}
+
+/// With rounded products the difference of two outputs is taken in float32: in bfloat16 a product
+/// with a random vector had a cosine of 0.006 with the true one.
+#[test]
+fn rounded_products_leave_fisher_products_exact() {
+    let mut config = small::config(AlgorithmKind::Trpo);
+    // As wide as those of `quick`.
+    (config.network.dense, config.network.recurrent) = (vec![256], Some(256));
+    let product = |kernels| {
+        let (mut learner, rollout) = small::learner_on(kernels, &config);
+        learner.absorb(&rollout).unwrap();
+        let prepared = learner.prepare(&rollout);
+        let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
+        let region = TrustRegion { damping: 0.0, ..TrustRegion::new(&config) };
+        let mut origin = region.origin(&mut learner, &mut minibatch);
+        let count = origin.parameters.len();
+        let mut stream = Stream::new(4, Purpose::Evaluation, 0, 0);
+        let vector: Vec<f32> = (0..count).map(|_| stream.normal() as f32).collect();
+        let mut product = vec![0.0; count];
+        region.fisher_times(&mut learner, &mut origin, &vector, &mut product);
+        product
+    };
+    let exact = product(Simd::PLAIN);
+    let size = |values: &[f32]| values.iter().map(|value| f64::from(*value).powi(2)).sum::<f64>();
+    for kernels in Simd::all() {
+        let other = product(kernels);
+        let difference: Vec<f32> = exact.iter().zip(&other).map(|(a, b)| a - b).collect();
+        let error = (size(&difference) / size(&exact)).sqrt();
+        assert!(error < 0.01, "{kernels}: {error}");
+    }
 }
 
 /// A step along a direction, halved until it is accepted: one that raises the divergence too
