@@ -21,7 +21,7 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
             let mut here = tiles.tiles.iter().map(|tile| &tiles.kinds[usize::from(*tile)]);
             // On a map that is made anew the agent appears anywhere.
             let anywhere = plan.player.place.is_some() || tiles.generate.is_some();
-            anywhere || here.any(|kind| kind.start)
+            anywhere || here.any(|kind| kind.start && !kind.rock)
         }
         MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => true,
     };
@@ -188,7 +188,9 @@ fn appears(plan: &Plan, of: Of) -> bool {
         there && (of.spawns >> index & 1 == 1 || spawn.kinds.iter().any(|(kind, _)| asked(*kind)))
     });
     let drawn = match &plan.map {
-        MapPlan::Tiles(tiles) => tiles.kinds.iter().filter_map(|kind| kind.thing).any(asked),
+        MapPlan::Tiles(tiles) => {
+            tiles.kinds.iter().filter(|kind| !kind.rock).filter_map(|kind| kind.thing).any(asked)
+        }
         MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => of.kinds != 0,
     };
     spawned || drawn
@@ -198,7 +200,10 @@ fn is_somewhere(plan: &Plan, zone: u8) -> bool {
     let own = &plan.zones[usize::from(zone)];
     match &plan.map {
         MapPlan::Tiles(tiles) if own.area.is_none() && own.tags.is_none() => {
-            tiles.tiles.iter().any(|tile| tiles.kinds[usize::from(*tile)].zone == Some(zone))
+            tiles.tiles.iter().any(|tile| {
+                let kind = &tiles.kinds[usize::from(*tile)];
+                kind.zone == Some(zone) && !kind.rock
+            })
         }
         _ => true,
     }
@@ -212,7 +217,9 @@ fn harmful(plan: &Plan, zones: u32) -> bool {
         || match &plan.map {
             MapPlan::Tiles(tiles) => tiles.tiles.iter().any(|tile| {
                 let kind = &tiles.kinds[usize::from(*tile)];
-                kind.damage.is_some() && kind.zone.is_some_and(|zone| zones >> zone & 1 == 1)
+                !kind.rock
+                    && kind.damage.is_some()
+                    && kind.zone.is_some_and(|zone| zones >> zone & 1 == 1)
             }),
             MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => true,
         }

@@ -30,13 +30,15 @@ impl fmt::Display for Mistake {
 #[derive(Debug)]
 pub(super) struct Mistakes {
     found: Vec<(usize, bool, String)>,
+    /// How often something was wrong, what is listed already included.
+    added: usize,
     /// What is read.
     text: String,
 }
 
 impl Mistakes {
     pub fn new(text: &str) -> Mistakes {
-        Mistakes { found: Vec::new(), text: text.to_owned() }
+        Mistakes { found: Vec::new(), added: 0, text: text.to_owned() }
     }
 
     /// The byte of a letter of a drawing that begins at `at`: by its line and column, from 0, where
@@ -60,6 +62,7 @@ impl Mistakes {
 
     /// Notes what is wrong at a byte of the text.
     pub fn add(&mut self, at: usize, text: impl Into<String>) {
+        self.added += 1;
         self.note(at, false, text.into());
     }
 
@@ -82,6 +85,11 @@ impl Mistakes {
     /// Whether there are as many as are listed.
     pub fn full(&self) -> bool {
         self.found.len() >= MOST
+    }
+
+    /// How often something was wrong so far, said before or not.
+    pub fn added(&self) -> usize {
+        self.added
     }
 
     /// Whether anything keeps the file from being played.

@@ -74,7 +74,8 @@ impl OwnRules {
         let spawn = &program.plan.spawns[usize::from(index)];
         let full = world.actors.len() >= MOST_THINGS && world.living().count() >= MOST_THINGS;
         // With fewer slots than that there is nothing to count.
-        let most = world.actors.len() >= spawn.most as usize && living(spawn, world) >= spawn.most;
+        let most =
+            world.actors.len() >= spawn.most as usize && living(spawn, index, world) >= spawn.most;
         if full || most || spawn.kinds.is_empty() {
             return None;
         }
@@ -129,10 +130,13 @@ fn stand_up(world: &mut World) {
     }
 }
 
-/// How many of a spawn's kinds there are.
-fn living(spawn: &Spawn, world: &World) -> u32 {
-    let of = |kind: ActorKind| spawn.kinds.iter().any(|(own, _)| *own == kind);
-    world.living().filter(|(_, actor)| of(actor.kind) && actor.health > 0).count() as u32
+/// How many things of a spawn there are: those of its kinds, where none says how many may be.
+fn living(spawn: &Spawn, index: u8, world: &World) -> u32 {
+    let of = |kind: ActorKind, tid: i32| {
+        let own = !spawn.marked || tid == i32::from(index) + 1;
+        own && spawn.kinds.iter().any(|(own, _)| *own == kind)
+    };
+    world.living().filter(|(_, actor)| of(actor.kind, actor.tid) && actor.health > 0).count() as u32
 }
 
 fn drawn_kind(spawn: &Spawn, world: &mut World) -> ActorKind {

@@ -29,6 +29,11 @@ pub(super) fn drawn_place(
     if !rock && !world.map.is_inside(x, y) {
         return None;
     }
+    if let Place::Zone(zone) = place
+        && !program.holds(zone, [x, y], &world.map)
+    {
+        return None;
+    }
     if matches!(place, Place::Free) && program.hurts[world.map.sector_at(x, y).0 as usize] {
         return None;
     }

@@ -172,6 +172,20 @@ impl Program {
         }
     }
 
+    /// Whether a point within one of a zone's areas is in the zone: a sector need not fill the
+    /// rectangle about it, as a tile does.
+    pub fn holds(&self, zone: u8, [x, y]: [Fixed; 2], map: &Map) -> bool {
+        let of = &self.plan.zones[usize::from(zone)];
+        let within = |[west, south, east, north]: [i32; 4]| {
+            let fits =
+                |low, value, high| Fixed::from_int(low) <= value && value <= Fixed::from_int(high);
+            fits(west, x, east) && fits(south, y, north)
+        };
+        of.tags.is_none()
+            || self.zones_of[map.sector_at(x, y).0 as usize] >> zone & 1 == 1
+            || of.area.is_some_and(within)
+    }
+
     /// Zones that the map's own tags and rectangles make.
     fn find_zones(&mut self, map: &Map) -> Result<(), EnvError> {
         for (index, zone) in self.plan.zones.iter().enumerate() {
@@ -195,11 +209,26 @@ impl Program {
                 }
             }
             if self.tags[index].is_empty() {
-                let why = format!(
-                    "map {}: zone {} has the tag {first}, which no sector has",
-                    map.name, zone.name
-                );
-                return Err(EnvError::Map { why });
+                let mut tags: Vec<i32> = map.sectors.iter().map(|sector| sector.tag).collect();
+                tags.sort_unstable();
+                tags.dedup();
+                tags.retain(|tag| *tag != 0);
+                let known = match tags.len() {
+                    0 => "none of the map's sectors has a tag".to_string(),
+                    _ => {
+                        let shown: Vec<_> = tags.iter().take(20).map(ToString::to_string).collect();
+                        let more = if tags.len() > 20 { " and more" } else { "" };
+                        format!("the map has {}{more}", shown.join(", "))
+                    }
+                };
+                let asked = if first == last {
+                    format!("the tag {first}, which no sector has")
+                } else {
+                    format!("the tags {first} to {last}, of which no sector has one")
+                };
+                return Err(EnvError::Map {
+                    why: format!("zone {} has {asked}; {known}", zone.name),
+                });
             }
         }
         Ok(())

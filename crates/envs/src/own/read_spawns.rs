@@ -19,7 +19,7 @@ pub(super) fn spawns(nodes: &[Node], zones: &[Zone], mistakes: &mut Mistakes) ->
                 format!("two [[spawn]] are called {}", name.unwrap_or_default()),
             );
         }
-        // Kinds that several tables put down are marked where one of them comes back.
+        // Kinds that several tables put down are marked where one of them comes back or is counted.
         let shared = |other: &Spawn| {
             other
                 .kinds
@@ -27,7 +27,8 @@ pub(super) fn spawns(nodes: &[Node], zones: &[Zone], mistakes: &mut Mistakes) ->
                 .any(|(kind, _)| spawns[index].kinds.iter().any(|(own, _)| own == kind))
         };
         let others = spawns.iter().enumerate().any(|(at, other)| at != index && shared(other));
-        spawns[index].marked = others && spawns[index].respawn.is_some();
+        let one = &mut spawns[index];
+        one.marked = others && (one.respawn.is_some() || one.marked);
     }
     spawns
 }
@@ -67,6 +68,7 @@ fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
         None | Some(Value::Bool(false)) => None,
         Some(_) => whole("respawn", &mut fields, 0, 1_000_000, mistakes),
     };
+    let counted = fields.place_of("most").is_some();
     let most = whole("most", &mut fields, 1, 1000, mistakes).unwrap_or(500);
     let health = fields.whole("health", 1, 100_000, mistakes).map(|points| points as i32);
     let speed = fields.whole("speed", 0, 40, mistakes).map(|speed| speed as i32);
@@ -100,7 +102,8 @@ fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
         health,
         speed,
         goal,
-        marked: false,
+        // Its own are counted.
+        marked: counted,
     }
 }
 

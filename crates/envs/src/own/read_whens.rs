@@ -3,7 +3,7 @@
 //! Long because it is one table: each event, condition and effect with its fields.
 
 use super::fields::{Fields, own_name};
-use super::mistakes::{Mistakes, unknown};
+use super::mistakes::{Mistakes, excerpt, unknown};
 use super::model::{MOST_COUNTERS, Names, Of, Place, Spawn, Trigger, When, Zone};
 use super::read_map::known_kinds;
 use super::read_parts::{amount, ground, place, range, term, zone};
@@ -52,6 +52,7 @@ fn when(
     names: &mut Names,
     mistakes: &mut Mistakes,
 ) -> Option<When> {
+    let before = mistakes.added();
     let mut fields = Fields::of(node, "[[when]]", mistakes);
     // A name for levels to change it by.
     if let Some((name, at)) = fields.text("name", mistakes) {
@@ -99,8 +100,9 @@ fn when(
     let lights = lights(fields.node("light"), zones, mistakes);
     let teleport: Option<Place> =
         fields.node("teleport").and_then(|node| place(node, zones, mistakes));
-    fields.finish(mistakes);
+    // Which fields an event has is not known of one that is none.
     let trigger = trigger?;
+    fields.finish(mistakes);
     let when = When {
         at: node.at,
         trigger,
@@ -127,12 +129,14 @@ fn when(
         || !when.spawn.is_empty()
         || !when.floors.is_empty()
         || !when.lights.is_empty();
-    if trigger == Trigger::Step && (changes || when.teleport.is_some()) {
+    if trigger == Trigger::Step && (changes || when.end || when.teleport.is_some()) {
         mistakes
-            .add(node.at, "a policy step can be rewarded, cost and counted; what changes the world goes by event = \"timer\"");
+            .add(node.at, "a policy step can be rewarded, cost and counted; what changes the world or ends the episode goes by event = \"timer\"");
     }
     let silent = !changes && !when.end && when.teleport.is_none() && when.reward == 0.0;
-    if silent && when.costs.is_empty() && when.counts.is_empty() && when.sets.is_empty() {
+    // What could not be read may be what it does.
+    let whole = mistakes.added() == before;
+    if silent && whole && when.costs.is_empty() && when.counts.is_empty() && when.sets.is_empty() {
         mistakes.warn(
             node.at,
             "this [[when]] does nothing; give it a reward, a cost, a count or an end",
@@ -193,7 +197,10 @@ fn trigger(
             let every = tics("every", fields, 0, mistakes);
             let first = tics("first", fields, every, mistakes);
             if every == 0 && first == 0 {
-                mistakes.add(at, "event timer needs `every` or `first`, in tics: 35 are a second");
+                mistakes.add(
+                    at,
+                    "event timer needs `every` or `first`, in tics, from 1: 35 are a second",
+                );
             }
             Trigger::Timer { every, first }
         }
@@ -232,6 +239,11 @@ fn trigger(
         )
     {
         mistakes.add(at, format!("event {event} is of nothing; leave `of` out"));
+    }
+    if let Some([(name, _), ..]) = of.as_deref()
+        && event == "damage"
+    {
+        mistakes.add(at, format!("event damage is by something: by = \"{}\"", excerpt(name)));
     }
     if by.is_some() && event != "damage" {
         mistakes.add(at, "`by` is for event damage");
@@ -404,10 +416,11 @@ fn costs(node: Option<&Node>, names: &mut Names, mistakes: &mut Mistakes) -> Vec
     match &node.value {
         Value::Table(entries) => {
             for entry in entries {
-                let number = amount(&entry.node, "a cost", mistakes).filter(|cost| *cost >= 0.0);
-                if number.is_none() {
+                let number = amount(&entry.node, "a cost", mistakes);
+                if number.is_some_and(|cost| cost < 0.0) {
                     mistakes.add(entry.node.at, "a cost must be a number from 0");
                 }
+                let number = number.filter(|cost| *cost >= 0.0);
                 if let (Some(term), Some(number)) =
                     (term(&entry.key, entry.at, names, mistakes), number)
                 {
@@ -425,11 +438,11 @@ fn movers(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
     at_most(node, "floor", mistakes);
     each(node, |node| {
         let mut fields = Fields::of(node, "floor", mistakes);
-        let place =
-            fields.text("of", mistakes).and_then(|(name, at)| ground(name, at, zones, mistakes));
+        let named = fields.text("of", mistakes);
+        let place = named.and_then(|(name, at)| ground(name, at, zones, mistakes));
         let to = fields.whole("to", -2048, 2048, mistakes);
         let speed = fields.whole("speed", 1, 1024, mistakes).unwrap_or(16);
-        if to.is_none() {
+        if to.is_none() || named.is_none() {
             mistakes.add(
                 node.at,
                 "floor needs a zone and a height: floor = { of = \"door\", to = -64 }",
@@ -445,10 +458,10 @@ fn lights(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
     at_most(node, "light", mistakes);
     each(node, |node| {
         let mut fields = Fields::of(node, "light", mistakes);
-        let place =
-            fields.text("of", mistakes).and_then(|(name, at)| ground(name, at, zones, mistakes));
+        let named = fields.text("of", mistakes);
+        let place = named.and_then(|(name, at)| ground(name, at, zones, mistakes));
         let to = fields.whole("to", 0, 255, mistakes);
-        if to.is_none() {
+        if to.is_none() || named.is_none() {
             mistakes
                 .add(node.at, "light needs a zone and a level: light = { of = \"hall\", to = 0 }");
         }

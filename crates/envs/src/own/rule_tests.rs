@@ -90,3 +90,76 @@ fn rectangles_are_no_doors_and_may_lie_over_what_hurts() {
     let burns = "[[when]]\nevent = \"damage\"\nby = \"pool\"\nreward = -1\ncost.burn = 1\n";
     assert_eq!(check(&corridor(&format!("{zone}{burns}"))).mistakes, []);
 }
+
+/// A counter comes to a number from above too, by counting; to be set back is no arrival.
+#[test]
+fn counters_count_down() {
+    let text = corridor(
+        "[[when]]\nevent = \"start\"\nset = { lives = 3, laps = 0 }\n\
+         [[when]]\nevent = \"timer\"\nevery = 35\ncount = { lives = -1, laps = 2 }\n\
+         [[when]]\nevent = \"counter\"\nof = \"laps\"\nreaches = 3\nset = { laps = 0 }\ncount = \"rounds\"\n\
+         [[when]]\nevent = \"counter\"\nof = \"lives\"\nreaches = 0\nreward = -10\nend = \"harm\"\n",
+    );
+    let mut env = env(&text, false);
+    play(&mut env, "", 60);
+    let episode = env.episode();
+    assert!(episode.terminated && env.world().tic < 115, "{} tics", env.world().tic);
+    // Laps come to 3 or more once, at the second count; that they are set from 4 to 0 is no round.
+    assert_eq!((episode.episode_return, stat(&env, "rounds")), (-10.0, 1.0));
+}
+
+/// A rule of a policy step that finishes the episode is paid once.
+#[test]
+fn a_steps_cost_that_ends_the_episode_is_paid_once() {
+    let text =
+        corridor("[[when]]\nevent = \"step\"\ncost.slow = 1.0\n[hard]\nend_on = [\"slow\"]\n");
+    let mut env = env(&text, true);
+    play(&mut env, "", 10);
+    let episode = env.episode();
+    assert!(episode.terminated);
+    assert_eq!(episode.cost, 1.0);
+}
+
+/// `most` counts a spawn's own things, whatever others of their kind there are.
+#[test]
+fn a_spawn_counts_its_own_things() {
+    let both = |first: &str, second: &str| corridor(&format!("{first}{second}"));
+    let bad = "[[spawn]]\nname = \"bad\"\nkind = \"Clip\"\ncount = 4\n";
+    let good = "[[spawn]]\nname = \"good\"\nkind = \"Clip\"\ncount = 3\nevery = 35\nmost = 5\n";
+    for text in [both(bad, good), both(good, bad)] {
+        let mut env = env(&text, false);
+        play(&mut env, "", 100);
+        let clips = env
+            .world()
+            .living()
+            .filter(|(_, thing)| thing.kind == hasard_engine::world::ActorKind::Clip);
+        assert_eq!(clips.count(), 9);
+    }
+}
+
+#[test]
+fn what_would_be_taken_for_another_rule_is_refused() {
+    let first = |rest: &str| {
+        let found = check(&corridor(rest)).mistakes;
+        let mut wrong = found.iter().filter(|one| !one.warning);
+        let first = wrong.next().unwrap_or_else(|| panic!("{rest}: nothing")).text.clone();
+        (first, wrong.count())
+    };
+    for (rest, words) in [
+        ("event = \"damage\"\nof = \"lava\"\ncost.x = 1\n", "by = \"lava\""),
+        ("event = \"step\"\nend = \"goal\"\n", "event = \"timer\""),
+        ("event = \"start\"\nfloor = { to = 5 }\n", "floor needs a zone"),
+        ("event = \"start\"\nlight = { to = 5 }\n", "light needs a zone"),
+        ("event = \"timer\"\nfirst = 0\nreward = 1\n", "from 1"),
+        // And one mistake is one line, whatever else hangs on it.
+        ("event = \"timr\"\nevery = 35\nfirst = 3\nreward = 1\n", "timer"),
+        ("event = \"start\"\nreward = \"much\"\n", "reward"),
+        ("event = \"start\"\ncost.lava = \"1.0\"\n", "a cost"),
+    ] {
+        let (text, more) = first(&format!("[[when]]\n{rest}"));
+        assert!(text.contains(words), "{rest}: {text}");
+        assert_eq!(more, 0, "{rest}: {text}");
+    }
+    let doubtful = check(&corridor("[[when]]\nevent = \"start\"\nreward = \"much\"\n"));
+    assert!(!doubtful.mistakes.iter().any(|one| one.text.contains("does nothing")), "{doubtful:?}");
+}

@@ -31,6 +31,8 @@ struct Change {
     counter: u8,
     before: i32,
     after: i32,
+    /// By counting, which may come to a number from above; to be set back is no arrival.
+    counted: bool,
 }
 
 /// The rules at work.
@@ -53,6 +55,9 @@ pub(super) struct OwnRules {
     /// Whether a rule has put the agent elsewhere in this tic: once is all, or two zones that send
     /// it to each other would go on for ever.
     moved: bool,
+    /// A rule of a policy step has finished the episode, which is left in the next: nothing more
+    /// is paid.
+    left: bool,
     /// Places that may still be tried in this tic: a file cannot make a tic last for ever.
     pub tries: u32,
     /// Notes spawns that find no room: for a rehearsal.
@@ -70,6 +75,7 @@ impl Hash for OwnRules {
             self.peak,
             self.jumping,
             self.using,
+            self.left,
         )
             .hash(state);
         (&self.returns, &self.walkers).hash(state);
@@ -89,6 +95,7 @@ impl OwnRules {
             returns: Vec::new(),
             walkers: Vec::new(),
             moved: false,
+            left: false,
             tries: TRIES,
             unplaced: None,
             program,
@@ -146,18 +153,18 @@ impl OwnRules {
         outcome.finished |= when.end;
         for (counter, number) in &when.counts {
             let before = self.counters[usize::from(*counter)];
-            self.change(*counter, before.saturating_add(*number));
+            self.change(*counter, before.saturating_add(*number), true);
         }
         for (counter, number) in &when.sets {
-            self.change(*counter, *number);
+            self.change(*counter, *number, false);
         }
         true
     }
 
-    fn change(&mut self, counter: u8, after: i32) {
+    fn change(&mut self, counter: u8, after: i32, counted: bool) {
         let before = std::mem::replace(&mut self.counters[usize::from(counter)], after);
         if self.changes.len() < MOST_CHANGES {
-            self.changes.push(Change { counter, before, after });
+            self.changes.push(Change { counter, before, after, counted });
         }
     }
 
@@ -204,10 +211,12 @@ impl OwnRules {
     fn follow_changes(&mut self, program: &Program, world: &mut World, outcome: &mut Outcome) {
         let mut next = 0;
         while next < self.changes.len() {
-            let Change { counter, before, after } = self.changes[next];
+            let Change { counter, before, after, counted } = self.changes[next];
             next += 1;
             self.dispatch(program, Occasion::Counter, 1.0, world, outcome, |trigger| {
-                matches!(trigger, Trigger::Counter { counter: of, reaches } if of == counter && before < reaches && after >= reaches)
+                let Trigger::Counter { counter: of, reaches } = trigger else { return false };
+                let risen = before < reaches && after >= reaches;
+                of == counter && (risen || counted && before > reaches && after <= reaches)
             });
         }
         self.changes.clear();
@@ -497,11 +506,13 @@ impl Rules for OwnRules {
     }
 
     fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {
-        if self.program.has(Occasion::Step) {
+        if self.program.has(Occasion::Step) && !self.left {
+            let finished = outcome.finished;
             let program = Arc::clone(&self.program);
             for (index, when) in program.rules(Occasion::Step) {
                 self.account(&program, index, when, 1.0, world.tic, outcome);
             }
+            self.left = outcome.finished && !finished;
         }
     }
 

@@ -118,6 +118,70 @@ fn drawn(id: i32, special: i32) -> String {
     )
 }
 
+/// A room of 512 by 512, tag 5, about a pool of 256 by 256, tag 6.
+fn ring() -> String {
+    let corners = |from: i32, to: i32| [(from, from), (from, to), (to, to), (to, from)];
+    let vertices: String = corners(0, 512)
+        .into_iter()
+        .chain(corners(128, 384))
+        .map(|(x, y)| format!("vertex{{x={x};y={y};}}\n"))
+        .collect();
+    let (mut lines, mut sides) = (String::new(), String::new());
+    for wall in 0..4 {
+        let next = (wall + 1) % 4;
+        lines += &format!("linedef{{v1={wall};v2={next};sidefront={wall};blocking=true;}}\n");
+        sides += "sidedef{sector=0;texturemiddle=\"STONE5\";}\n";
+    }
+    for wall in 0..4 {
+        let (next, side) = ((wall + 1) % 4, 4 + 2 * wall);
+        lines += &format!(
+            "linedef{{v1={};v2={};sidefront={side};sideback={};twosided=true;}}\n",
+            4 + wall,
+            4 + next,
+            side + 1
+        );
+        sides += "sidedef{sector=1;}\nsidedef{sector=0;}\n";
+    }
+    let sector = |tag: i32| {
+        format!(
+            "sector{{heightfloor=0;heightceiling=128;texturefloor=\"FLAT5\";textureceiling=\"FLAT5\";lightlevel=192;id={tag};}}\n"
+        )
+    };
+    format!(
+        "[map]\nudmf = '''namespace=\"zdoom\";\n{vertices}{lines}{sides}{}{}thing{{x=64;y=64;angle=0;type=1;}}\n'''\n",
+        sector(5),
+        sector(6)
+    )
+}
+
+/// A zone of a tag is its sectors, not the rectangle about them.
+#[test]
+fn a_zone_of_a_tag_has_the_shape_of_its_sectors() {
+    let text = task(
+        "Ring",
+        &format!(
+            "{}[zones]\nring = {{ tag = 5 }}\npool = {{ tag = 6 }}\n[player]\nin = \"ring\"\n\
+             [[spawn]]\nkind = \"Clip\"\ncount = 20\nin = \"ring\"\n",
+            ring()
+        ),
+    );
+    let mut env = env(&text, false);
+    for seed in 0..20 {
+        env.reset(seed);
+        let world = env.world();
+        for (_, thing) in world.living() {
+            let tag = world.map.sectors[world.map.sector_at(thing.x, thing.y).0 as usize].tag;
+            assert_eq!(tag, 5, "seed {seed}: {:?}", thing.kind);
+        }
+    }
+    let absent = check(&text.replace("tag = 6", "tag = 7"));
+    let said = &absent.mistakes[0].text;
+    assert!(
+        said.contains("zone pool has the tag 7") && said.contains("the map has 5, 6"),
+        "{said}"
+    );
+}
+
 /// A map's own thing ids are none of the names of a file's spawns.
 #[test]
 fn a_maps_own_ids_are_no_names_of_spawns() {
