@@ -154,6 +154,11 @@ fn wrong_maps_are_named_in_a_line() {
         let error = folder.open("Wrong", map).unwrap_err();
         assert!(error.contains(words) && error.lines().count() == 1, "{map}: {error}");
     }
+    let path = folder.0.join("Inline.toml");
+    let inline = format!("map = {{ udmf = \"small.udmf\" }}\n{}", REST.replace("NAME", "Inline"));
+    std::fs::write(&path, inline).unwrap();
+    let error = own::read_text(&path).unwrap_err().to_string();
+    assert!(error.contains("write [map] on a line of its own"), "{error}");
     // A check lists maps that cannot be read among the mistakes, each where it is named.
     let maps = "[map]\nudmf = \"absent\\u0007.udmf\"\n[levels.2]\nmap = { wad = \"no.wad\" }\ncolour = 1\n";
     let path = folder.0.join("Listed.toml");

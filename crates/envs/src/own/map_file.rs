@@ -32,7 +32,8 @@ pub(super) struct WithMaps {
 /// A text with the maps that it names, which lie in `folder` or where their paths lead from there.
 pub(super) fn with_maps(text: String, folder: &Path) -> WithMaps {
     // What is wrong with the text is for its reader to say, with line and column.
-    let root = tree::parse(&text, &mut Mistakes::new(&text));
+    let mut mistakes = Mistakes::new(&text);
+    let root = tree::parse(&text, &mut mistakes);
     let mut named = Vec::new();
     find(&root, &mut named);
     let is_laid = root.get("map").is_some_and(|map| map.node.get("files").is_some());
@@ -63,6 +64,13 @@ pub(super) fn with_maps(text: String, folder: &Path) -> WithMaps {
     // The map is written without what is not played, so the text keeps the list of it.
     if !left_out.is_empty() {
         whole += &format!("\n[map.left_out]\n{left_out}");
+    }
+    // An inline table takes no more fields.
+    let mut laid = Mistakes::new(&whole);
+    tree::parse(&whole, &mut laid);
+    if laid.any() && !mistakes.any() {
+        let why = "a map in { } cannot name a file; write [map] on a line of its own, and its fields below";
+        return WithMaps { text, wrong: Some(why.to_string()) };
     }
     WithMaps { text: whole, wrong }
 }

@@ -163,6 +163,7 @@ pub(super) enum Facing {
 /// The agent at the start.
 #[derive(Clone, Debug)]
 pub(super) struct PlayerPlan {
+    pub at: usize,
     pub place: Option<Place>,
     pub height: Height,
     pub facing: Facing,

@@ -61,7 +61,11 @@ impl OwnRules {
                 }
             }
         }
-        enter(program, &mut self.tries, world);
+        if !enter(program, &mut self.tries, world)
+            && let Some(unplaced) = &self.unplaced
+        {
+            unplaced.agent.store(true, Ordering::Relaxed);
+        }
     }
 
     /// Puts down a thing of a spawn; none where there is no room.
@@ -99,7 +103,7 @@ impl OwnRules {
             return Some(id);
         }
         if let Some(unplaced) = &self.unplaced {
-            unplaced.fetch_or(1 << index, Ordering::Relaxed);
+            unplaced.spawns.fetch_or(1 << index, Ordering::Relaxed);
         }
         None
     }
@@ -154,10 +158,10 @@ fn drawn_kind(spawn: &Spawn, world: &mut World) -> ActorKind {
     spawn.kinds[0].0
 }
 
-/// The agent enters.
-fn enter(program: &Program, tries: &mut u32, world: &mut World) {
+/// The agent enters: whether there was room where it is to appear.
+fn enter(program: &Program, tries: &mut u32, world: &mut World) -> bool {
     let plan = &program.plan.player;
-    match plan.place {
+    let placed = match plan.place {
         Some(place) => move_player(program, place, plan.height, tries, world),
         None if program.layout.is_some() => {
             move_player(program, Place::Free, Height::Above(0), tries, world)
@@ -169,9 +173,10 @@ fn enter(program: &Program, tries: &mut u32, world: &mut World) {
             let z = world.sector(world.map.sector_at(x, y)).floor;
             world.set_position(body(world), x, y, z);
             stage::set_angle(world, turned(degrees));
+            true
         }
-        None => {}
-    }
+        None => true,
+    };
     match plan.facing {
         Facing::Random => {
             let angle = stage::random_angle(world);
@@ -195,6 +200,7 @@ fn enter(program: &Program, tries: &mut u32, world: &mut World) {
             player.max_ammo[which] = player.max_ammo[which].max(*amount);
         }
     }
+    placed
 }
 
 /// An angle in degrees.

@@ -46,22 +46,23 @@ pub(super) fn drawn_place(
     Some([x, y, z])
 }
 
-/// Moves the agent to a random point of a place, if there is room for it.
+/// Moves the agent to a random point of a place, if there is room for it: whether there was.
 pub(super) fn move_player(
     program: &Program,
     place: Place,
     height: Height,
     tries: &mut u32,
     world: &mut World,
-) {
+) -> bool {
     for _ in 0..PLAYER_TRIES.min(*tries) {
         *tries -= 1;
         if let Some([x, y, z]) = drawn_place(program, place, height, false, world)
             && world.set_position(body(world), x, y, z)
         {
-            return;
+            return true;
         }
     }
+    false
 }
 
 /// The agent's body.

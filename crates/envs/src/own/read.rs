@@ -128,7 +128,9 @@ fn actions(node: Option<&Node>, mistakes: &mut Mistakes) -> Vec<Vec<&'static str
     let mut found: Vec<Vec<&'static str>> = Vec::new();
     for group in groups.iter().take(12) {
         let mut buttons = Vec::new();
-        for (name, at) in texts(group, "a group of buttons", mistakes) {
+        let named = texts(group, "a group of buttons", mistakes);
+        let none = named.is_empty();
+        for (name, at) in named {
             match BUTTONS.iter().find(|(known, _)| *known == name) {
                 Some((known, _))
                     if found.iter().flatten().chain(&buttons).any(|other| other == known) =>
@@ -140,9 +142,9 @@ fn actions(node: Option<&Node>, mistakes: &mut Mistakes) -> Vec<Vec<&'static str
                     .add(at, unknown("button", name, BUTTONS.iter().map(|(known, _)| *known))),
             }
         }
-        if buttons.is_empty() {
+        if none {
             mistakes.add(group.at, "a group of actions needs a button");
-        } else {
+        } else if !buttons.is_empty() {
             found.push(buttons);
         }
     }
@@ -198,6 +200,12 @@ fn terms(node: &Node, names: &mut Names, mistakes: &mut Mistakes) {
 fn player(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> PlayerPlan {
     let mut fields = Fields::of(node, "[player]", mistakes);
     let place = fields.node("in").and_then(|node| place(node, zones, mistakes));
+    for key in ["height", "z"] {
+        if let Some(at) = fields.place_of(key).filter(|_| place.is_none()) {
+            mistakes
+                .warn(at, format!("`{key}` has no effect without `in`, where the agent appears"));
+        }
+    }
     let height = height(&mut fields, mistakes);
     let facing = match fields.node("angle") {
         None => {
@@ -248,7 +256,7 @@ fn player(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> PlayerPlan {
         kinds.finish(mistakes);
     }
     fields.finish(mistakes);
-    PlayerPlan { place, height, facing, health, armor, weapons, ammo, speed }
+    PlayerPlan { at: node.at, place, height, facing, health, armor, weapons, ammo, speed }
 }
 
 fn light(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Option<Light> {

@@ -2,7 +2,7 @@
 
 use super::model::Plan;
 use super::program::Program;
-use super::rules::OwnRules;
+use super::rules::{OwnRules, Unplaced};
 use crate::EnvError;
 use crate::scenarios::AnyRules;
 use crate::single::simulation::Game;
@@ -10,21 +10,19 @@ use hasard_engine::map::{Map, MapSource};
 use hasard_engine::math::Rng;
 use hasard_engine::world::{Buttons, Command, World};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Plays some tics of a plan with buttons at random, and gives the spawns, a bit each, for which
-/// there was no room.
+/// Plays some tics of a plan with buttons at random, and gives what there was no room for.
 pub(super) fn rehearse(
     plan: &Plan,
     source: &MapSource,
     counters: usize,
     seed: u64,
     tics: u32,
-) -> Result<u64, EnvError> {
+) -> Result<Arc<Unplaced>, EnvError> {
     let map = Map::build(source, &plan.name, &[])
         .map_err(|error| EnvError::Map { why: error.to_string() })?;
     let program = Program::new(plan.clone(), &map, &[])?;
-    let unplaced = Arc::new(AtomicU64::new(0));
+    let unplaced = Arc::new(Unplaced::default());
     let mut rules = OwnRules::new(Arc::new(program), counters);
     rules.unplaced = Some(Arc::clone(&unplaced));
     let rules = AnyRules::new(rules);
@@ -41,5 +39,5 @@ pub(super) fn rehearse(
         let over = game.over();
         game.rules.end_step(&game.world, over, &mut game.outcome);
     }
-    Ok(unplaced.load(Ordering::Relaxed))
+    Ok(unplaced)
 }

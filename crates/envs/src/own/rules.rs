@@ -13,7 +13,7 @@ use hasard_engine::math::Fixed;
 use hasard_engine::world::{ActorFlags, ActorKind, Buttons, Event, World};
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicBool, AtomicU64};
 
 /// Most events of a tic that are looked at: rules that hurt raise more of them.
 const MOST_EVENTS: usize = 10_000;
@@ -60,8 +60,16 @@ pub(super) struct OwnRules {
     left: bool,
     /// Places that may still be tried in this tic: a file cannot make a tic last for ever.
     pub tries: u32,
-    /// Notes spawns that find no room: for a rehearsal.
-    pub unplaced: Option<Arc<AtomicU64>>,
+    /// Notes what finds no room: for a rehearsal.
+    pub unplaced: Option<Arc<Unplaced>>,
+}
+
+/// What found no room.
+#[derive(Default, Debug)]
+pub(super) struct Unplaced {
+    /// Spawns, a bit each.
+    pub spawns: AtomicU64,
+    pub agent: AtomicBool,
 }
 
 /// The tables are no part of a fingerprint.
@@ -200,7 +208,9 @@ impl OwnRules {
         if let Some(place) = when.teleport
             && !std::mem::replace(&mut self.moved, true)
         {
-            move_player(program, place, super::model::Height::Above(0), &mut self.tries, world);
+            // Where there is no room it stays.
+            let _ =
+                move_player(program, place, super::model::Height::Above(0), &mut self.tries, world);
             // A fall is counted from there.
             self.peak = world.get(world.players[0].actor).map_or(self.peak, |body| body.z);
             self.look_around(program, world, outcome);

@@ -17,6 +17,7 @@ use crate::{CostTerm, EnvError, RuleSet, Scenario};
 use hasard_engine::map::{Map, MapSource};
 use hasard_engine::world::World;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// Most levels of a file.
 const MOST_LEVELS: u8 = 9;
@@ -189,10 +190,19 @@ fn try_map(plan: &Plan, setting: &str, mistakes: &mut Mistakes) {
 fn try_opening(plan: &Plan, counters: usize, mistakes: &mut Mistakes) {
     let opened = map_of(plan).and_then(|source| rehearse(plan, &source, counters, 0, 1));
     for (index, spawn) in plan.spawns.iter().enumerate() {
-        if opened.as_ref().is_ok_and(|unplaced| unplaced >> index & 1 == 1) {
+        if opened
+            .as_ref()
+            .is_ok_and(|unplaced| unplaced.spawns.load(Ordering::Relaxed) >> index & 1 == 1)
+        {
             mistakes
                 .warn(spawn.at, "there is no room for all of this [[spawn]]: look at `in`, `z` and `height`, or put down fewer");
         }
+    }
+    if opened.is_ok_and(|unplaced| unplaced.agent.load(Ordering::Relaxed)) {
+        mistakes.warn(
+            plan.player.at,
+            "there is no room for the agent where [player] has it appear: it stays at the map's start; look at `in`, `z` and `height`",
+        );
     }
 }
 

@@ -359,6 +359,16 @@ fn fields_without_effect_are_warned_of() {
     let spawn = |rest: &str| format!("[[spawn]]\nkind = \"Clip\"\n{rest}\n");
     assert!(warned(&spawn("each = 3"), "`each` has no effect without `every`"));
     assert!(!warned(&spawn("each = 3\nevery = 35"), "no effect"));
+    assert!(warned("[player]\nheight = 8\n", "`height` has no effect without `in`"));
+    assert!(warned("[player]\nin = [4000, 4000, 5000, 5000]\n", "no room for the agent"));
+    assert!(!warned("[player]\nin = \"goal\"\nheight = 8\n", "no effect"));
+    assert!(!warned("[player]\nin = \"goal\"\nheight = 8\n", "no room"));
+    let rock = "\"g\" = { like = \"#\", thing = \"Clip\", zone = \"goal\" }\n";
+    let rules = "[[when]]\nevent = \"pickup\"\nof = \"Clip\"\nreward = 1\n[[when]]\nevent = \"in\"\nof = \"goal\"\nreward = 1\n";
+    let walled = corridor("").replace("g = { like = \".\", zone = \"goal\" }\n", rock) + rules;
+    let never = check(&walled).mistakes;
+    let never = never.iter().filter(|one| one.warning && one.text.contains("this never happens"));
+    assert_eq!(never.count(), 2);
     assert!(warned(&spawn("health = 30"), "`health` has no effect"));
     assert!(!warned("[[spawn]]\nkind = \"ZombieMan\"\nhealth = 30\n", "no effect"));
     let maze = "[levels.2.map.generate]\nkind = \"maze\"\n";
