@@ -58,7 +58,7 @@ pub struct FilmArgs {
                         Only what the action space has does something; --full-actions gives everything."
 )]
 pub struct PlayArgs {
-    /// Environment id, see `hasard envs`
+    /// Environment id (see `hasard envs`), or the file of a task of your own
     #[arg(value_parser = env_id)]
     pub env: String,
     /// Folder in which every finished episode is kept; `hasard report FOLDER` counts them as
@@ -82,7 +82,7 @@ pub struct PlayArgs {
 /// `hasard render`.
 #[derive(Args, Debug)]
 pub struct RenderArgs {
-    /// Environment id, see `hasard envs`
+    /// Environment id (see `hasard envs`), or the file of a task of your own
     #[arg(value_parser = env_id)]
     pub env: String,
     /// PNG file to write
@@ -118,7 +118,8 @@ pub struct RenderArgs {
 /// `hasard record`.
 #[derive(Args, Debug)]
 pub struct RecordArgs {
-    /// Environment id, run directory, agent file or zoo:NAME (the agent acts), or .episode file
+    /// Environment id, the file of a task of your own, run directory, agent file or zoo:NAME (the
+    /// agent acts), or .episode file
     #[arg(value_name = "ENV|RUN|zoo:NAME|FILE")]
     pub what: OsString,
     /// File to write: .mp4, .gif or .episode

@@ -213,7 +213,7 @@ fn scenarios_help() -> String {
 /// `hasard settings`.
 #[derive(Args, Debug)]
 pub struct SettingsArgs {
-    /// Environment id
+    /// Environment id, or the file of a task of your own
     #[arg(default_value = Scenario::EXAMPLE_ID, value_parser = env_id)]
     pub env: String,
     /// The algorithm

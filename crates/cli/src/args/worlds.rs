@@ -61,7 +61,7 @@ pub struct CheckArgs {
 /// `hasard rollout`.
 #[derive(Args, Debug)]
 pub struct RolloutArgs {
-    /// Environment id, see `hasard envs`
+    /// Environment id (see `hasard envs`), or the file of a task of your own
     #[arg(value_parser = env_id)]
     pub env: String,
     /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, shuttle, carrier, run:DIR,
@@ -92,7 +92,7 @@ pub struct RolloutArgs {
 #[derive(Args, Debug)]
 #[command(mut_arg("frame_skip", |arg| arg.hide(true)), mut_arg("size", |arg| arg.hide(true)))]
 pub struct TraceArgs {
-    /// Environment id
+    /// Environment id, or the file of a task of your own
     #[arg(value_parser = env_id)]
     pub env: String,
     /// Where the player is placed, at rest, in map units and degrees; the episode's own start if
@@ -122,7 +122,8 @@ pub struct TraceArgs {
 /// `hasard bench`.
 #[derive(Args, Debug)]
 pub struct BenchArgs {
-    /// Environment id; several, with commas between, are measured in one mixed batch
+    /// Environment id, or the file of a task of your own; several, with commas between, are measured
+    /// in one mixed batch
     #[arg(value_parser = env_id)]
     pub env: String,
     /// Environments in the batch
@@ -169,7 +170,7 @@ pub struct BenchArgs {
 /// `hasard export-wad`.
 #[derive(Args, Debug)]
 pub struct ExportWadArgs {
-    /// Environment id
+    /// Environment id, or the file of a task of your own
     #[arg(value_parser = env_id)]
     pub env: String,
     /// WAD file to write

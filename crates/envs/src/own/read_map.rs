@@ -231,6 +231,9 @@ fn tile_kind(
     }
     if let Some((name, at)) = fields.text("thing", mistakes) {
         kind.thing = actor(name, at, mistakes);
+        if kind.thing.is_some_and(|thing| thing.info().editor_number == 0) {
+            mistakes.add(at, format!("no map has a {name}; put it down with [[spawn]]"));
+        }
     }
     fields.finish(mistakes);
     if !kind.rock && kind.ceiling < kind.floor[1] + 1 {

@@ -369,6 +369,8 @@ fn fields_without_effect_are_warned_of() {
     let never = check(&walled).mistakes;
     let never = never.iter().filter(|one| one.warning && one.text.contains("this never happens"));
     assert_eq!(never.count(), 2);
+    let shot = check(&corridor("r = { like = \".\", thing = \"Rocket\" }\n")).mistakes;
+    assert!(shot.iter().any(|one| !one.warning && one.text.contains("[[spawn]]")), "{shot:?}");
     assert!(warned(&spawn("health = 30"), "`health` has no effect"));
     assert!(!warned("[[spawn]]\nkind = \"ZombieMan\"\nhealth = 30\n", "no effect"));
     let maze = "[levels.2.map.generate]\nkind = \"maze\"\n";

@@ -130,8 +130,7 @@ impl Algorithm for Cpo {
         let advantages = standardised(minibatch.advantages(), &self.settings);
         // In the unit of their own deviation, and so is the excess: theorem 2 holds in any unit,
         // and what counts as nothing below is so few of these.
-        let (costs, unit) =
-            standardised_by(&minibatch.costs()[worst.unwrap_or(0)].advantages, 0.0);
+        let (costs, unit) = standardised_by(&minibatch.costs()[worst.unwrap_or(0)].advantages, 0.0);
         let reward_loss = |heads: &Heads| -> Loss {
             heads.mean([&heads.ratio], |row, [ratio]| -(ratio * advantages[row]))
         };

@@ -108,11 +108,7 @@ impl Privileged {
     fn share_left(&self, age: u32, gamma: f64) -> f64 {
         let left = |age: u32| {
             let steps = f64::from(self.episode_steps.saturating_sub(age));
-            if gamma < 1.0 {
-                (1.0 - libm::pow(gamma, steps)) / (1.0 - gamma)
-            } else {
-                steps
-            }
+            if gamma < 1.0 { (1.0 - libm::pow(gamma, steps)) / (1.0 - gamma) } else { steps }
         };
         left(age) / left(0).max(1.0)
     }
