@@ -16,7 +16,7 @@ pub use crate::learning::targets::Prepared;
 use crate::learning::targets::prepare;
 use crate::networks::cpu::vectors::Vectors;
 use crate::networks::device::ComputeDevice;
-use crate::networks::{ModelSequences, ModelShape, Published, Stack};
+use crate::networks::{ModelShape, Published, Stack};
 use crate::sampling::auxiliary::Auxiliary;
 use crate::sampling::rollout::Rollout;
 use crate::team::Team;
@@ -325,73 +325,6 @@ impl Learner {
         self.parameters[self.shape.parameter_range(0)].to_vec()
     }
 
-    /// The policy network's outputs under its present parameters: where actors recorded them, they
-    /// are not computed anew.
-    pub fn present_outputs(&mut self, batch: &mut ModelSequences<'_>) -> Vec<f32> {
-        self.refresh();
-        self.networks.forward_network(0, batch)
-    }
-
-    /// Policy outputs under other parameters of the policy network.
-    pub fn policy_outputs(
-        &mut self,
-        batch: &mut ModelSequences<'_>,
-        parameters: &[f32],
-    ) -> Vec<f32> {
-        self.refresh_pixels();
-        self.stale[0] = true;
-        self.networks.load_network(0, parameters);
-        self.networks.forward_network(0, batch)
-    }
-
-    /// The policy that some outputs of its network are, as heads without values.
-    #[must_use]
-    pub fn policy_heads(&self, minibatch: &Minibatch<'_>, outputs: &[f32]) -> Heads {
-        Heads::new(&self.shape, outputs, self.shape.action.parameters(), minibatch)
-    }
-
-    /// The gradient in the policy network's parameters from that of its outputs of the last forward
-    /// pass.
-    pub fn policy_backward(
-        &mut self,
-        batch: &mut ModelSequences<'_>,
-        rows: &[f32],
-        gradient: &mut [f32],
-    ) {
-        self.networks.backward_network(0, batch, rows, gradient);
-    }
-
-    /// Policy outputs under parameters of the policy network, in float32 whatever the run's
-    /// products: differences of outputs a little way apart are what rounding leaves nothing of.
-    pub fn fisher_outputs(
-        &mut self,
-        batch: &mut ModelSequences<'_>,
-        parameters: &[f32],
-    ) -> Vec<f32> {
-        let Some(fisher) = &mut self.fisher else { return self.policy_outputs(batch, parameters) };
-        fisher.load_pixels(&self.pixels.scale());
-        fisher.load_network(0, parameters);
-        fisher.forward_network(0, batch)
-    }
-
-    /// The gradient from that of the outputs of the last [`Learner::fisher_outputs`].
-    pub fn fisher_backward(
-        &mut self,
-        batch: &mut ModelSequences<'_>,
-        rows: &[f32],
-        gradient: &mut [f32],
-    ) {
-        let network = self.fisher.as_mut().unwrap_or(&mut self.networks);
-        network.backward_network(0, batch, rows, gradient);
-    }
-
-    /// Replaces the policy network's parameters.
-    pub fn set_policy_parameters(&mut self, parameters: &[f32]) {
-        let range = self.shape.parameter_range(0);
-        self.parameters[range].copy_from_slice(parameters);
-        self.stale[0] = true;
-    }
-
     /// Takes over weights and normalisers of another learner of the same shape, and its count of
     /// updates.
     pub fn inherit(&mut self, other: &Learner) -> Result<(), LearnError> {
@@ -424,5 +357,6 @@ fn diverged(what: &str, value: f64) -> LearnError {
 }
 
 mod anew;
+mod second_order;
 #[cfg(test)]
 mod tests;
