@@ -39,6 +39,15 @@ fn levels_stand_in_one_animation_and_mistakes_are_named() {
     let said = folder.ok(&format!("{line} -o h"));
     assert!(said.contains("h/levels.gif: 3 levels, 35 pictures"), "{said}");
     assert!(folder.0.join("h/remedy_rush.gif").is_file());
+    // Each level is its own agent's, also where the zoo is a folder, as in the repository.
+    let levels = folder.read("h/levels.gif");
+    std::fs::create_dir(folder.0.join("zoo")).unwrap();
+    for level in 1..=3 {
+        let name = format!("RemedyRushLevel{level}.agent");
+        std::fs::copy(format!("../../zoo/{name}"), folder.0.join("zoo").join(name)).unwrap();
+    }
+    folder.ok(&format!("{line} -o f"));
+    assert!(folder.read("f/levels.gif") == levels, "the same agents in a folder");
     for (line, why) in [
         ("highlights --seconds 0", "0.5 to 60"),
         ("highlights --most-mb -1", "--most-mb"),

@@ -286,8 +286,9 @@ fn policy_at(place: &Path) -> OsString {
 /// acts that of the level, if the zoo has it.
 fn level(args: &HighlightsArgs, place: &Path, id: EnvId) -> Result<Vec<Picture>, Failure> {
     let looks = EnvOptions::default();
-    let own = zoo::after(place.as_os_str(), "zoo:")
-        .and_then(|_| zoo::find(format!("zoo:{id}").as_ref()).ok());
+    // Part of the program, or in a folder of the zoo.
+    let is_of_the_zoo = zoo::agents().iter().any(|(_, agent)| agent == place);
+    let own = is_of_the_zoo.then(|| zoo::find(format!("zoo:{id}").as_ref()).ok()).flatten();
     let policy = policy_at(own.as_deref().unwrap_or(place));
     let id = id.to_string();
     let mut performance = Performance::new(&id, &policy, &looks, Elsewhere::default(), args.seed)?;
