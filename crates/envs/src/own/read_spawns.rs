@@ -152,7 +152,11 @@ fn goal(fields: &mut Fields<'_>, zones: &[Zone], mistakes: &mut Mistakes) -> Goa
         .take(16)
         .collect();
     match fields.text("goal", mistakes) {
-        _ if !patrol.is_empty() => Goal::Patrol(patrol),
+        Some((_, at)) if !patrol.is_empty() => {
+            mistakes.add(at, "a monster has a goal or a patrol; leave one out");
+            Goal::Patrol(patrol)
+        }
+        None if !patrol.is_empty() => Goal::Patrol(patrol),
         None => Goal::None,
         Some(("wander", _)) => Goal::Wander,
         Some(("chase", _)) => Goal::Chase,

@@ -133,6 +133,13 @@ fn when(
         mistakes
             .add(node.at, "a policy step can be rewarded, cost and counted; what changes the world or ends the episode goes by event = \"timer\"");
     }
+    let measured = matches!(trigger, Trigger::Damage { .. } | Trigger::Hit(_) | Trigger::Land);
+    if over >= 1.0 && !measured {
+        mistakes.warn(
+            node.at,
+            "this never happens: `over` is for the events damage, hit and land, all others have an amount of 1",
+        );
+    }
     let silent = !changes && !when.end && when.teleport.is_none() && when.reward == 0.0;
     // What could not be read may be what it does.
     let whole = mistakes.added() == before;

@@ -369,6 +369,11 @@ fn fields_without_effect_are_warned_of() {
     let never = check(&walled).mistakes;
     let never = never.iter().filter(|one| one.warning && one.text.contains("this never happens"));
     assert_eq!(never.count(), 2);
+    assert!(warned("[[when]]\nevent = \"jump\"\nover = 1\nreward = 1\n", "`over` is for"));
+    assert!(!warned("[[when]]\nevent = \"land\"\nover = 1\nreward = 1\n", "`over` is for"));
+    let both = "[[spawn]]\nkind = \"ZombieMan\"\ngoal = \"chase\"\npatrol = [\"goal\"]\n";
+    let both = check(&corridor(both)).mistakes;
+    assert!(both.iter().any(|one| !one.warning && one.text.contains("leave one out")), "{both:?}");
     let shot = check(&corridor("r = { like = \".\", thing = \"Rocket\" }\n")).mistakes;
     assert!(shot.iter().any(|one| !one.warning && one.text.contains("[[spawn]]")), "{shot:?}");
     assert!(warned(&spawn("health = 30"), "`health` has no effect"));
