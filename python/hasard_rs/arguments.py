@@ -85,7 +85,9 @@ def refuse_task(given: Iterable[str]) -> None:
 
 
 def for_make(given: dict[str, Any]) -> dict[str, Any]:
-    """Returns arguments `given` for an id as Gymnasium's `make` takes them: of integers none but Python's. Raises what `refuse_task` does."""
+    """Returns arguments `given` for an id as Gymnasium's `make` takes them: of integers none but Python's.
+
+    Raises what `refuse_task` does."""
     refuse_task(given)
     limit: Any = given.get("max_episode_steps")
     return {**given, "max_episode_steps": int(limit)} if is_whole(limit) else given

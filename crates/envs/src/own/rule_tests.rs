@@ -98,7 +98,7 @@ fn counters_count_down() {
         "[[when]]\nevent = \"start\"\nset = { lives = 3, laps = 0 }\n\
          [[when]]\nevent = \"timer\"\nevery = 35\ncount = { lives = -1, laps = 2 }\n\
          [[when]]\nevent = \"counter\"\nof = \"laps\"\nreaches = 3\nset = { laps = 0 }\ncount = \"rounds\"\n\
-         [[when]]\nevent = \"counter\"\nof = \"lives\"\nreaches = 0\nreward = -10\nend = \"harm\"\n",
+         [[when]]\nevent = \"counter\"\nof = \"lives\"\nreaches = 0\nreward = -10\nend = \"goal\"\n",
     );
     let mut env = env(&text, false);
     play(&mut env, "", 60);

@@ -149,9 +149,9 @@ mod tests {
 
     /// A16. Algorithm 1 of FOCOPS ends its passes when the mean divergence over the batch, of the
     /// policy as it is after the pass, is beyond delta; here it is KL(pi_k, pi), that of every
-    /// algorithm's `target_kl`, which equals FOCOPS' KL(pi, pi_k) to second order. Divergences after 1, 2, ... passes are
-    /// taken from runs of so many; a target between those of two passes ends at the later of them,
-    /// one pass before what was noted ahead of each step would.
+    /// algorithm's `target_kl`, which equals FOCOPS' KL(pi, pi_k) to second order. Divergences after
+    /// 1, 2, ... passes are taken from runs of so many; a target between those of two passes ends at
+    /// the later of them, one pass before what was noted ahead of each step would.
     #[test]
     fn passes_end_by_the_divergence_after_them() {
         let run = |epochs: usize, target: Option<f64>| {

@@ -166,9 +166,9 @@ mod tests {
         assert_eq!(above.optimisers.iter().map(|adam| adam.steps).collect::<Vec<_>>(), [6, 6]);
     }
 
-    /// A3. The projection's step is as short as the first (each stops by its
-    /// divergence from the policy that it begins with, as in OmniSafe): it ends when KL(halfway,
-    /// new) is beyond the target, with a pass to spare or with none.
+    /// A3. The projection's step is as short as the first (each stops by its divergence from the
+    /// policy that it begins with, as in OmniSafe): it ends when KL(halfway, new) is beyond the
+    /// target, with a pass to spare or with none.
     #[test]
     fn the_second_step_stops_at_its_own_divergence() {
         let passes = |target: f64| {

@@ -2,8 +2,8 @@
 //! ignored.
 //!
 //! The policy moves along the natural gradient to the edge of a trust region, then back until the
-//! surrogate has improved and the divergence is within its bound; the critics make some steps of Adam.
-//! Policy and critics are separate networks.
+//! surrogate has improved and the divergence is within its bound; the critics make some steps of
+//! Adam. Policy and critics are separate networks.
 //!
 //! The released code differs: its gradient is that of the log-probabilities and the exploration
 //! loss, its line search compares that value with one without the exploration loss (and, with

@@ -76,7 +76,7 @@ impl TrustRegion {
         // Spread over all lanes and episodes.
         let sampled: Vec<usize> = (0..count).map(|index| index * lanes / count).collect();
         let mut sample = minibatch.batch.of_lanes(learner.shape(), &sampled);
-        let sample_outputs = learner.fisher_outputs(&mut sample, &parameters);
+        let sample_outputs = learner.fisher_origin(&mut sample);
         let action = &learner.shape().action;
         let sample_policy = Policy::new(action, &sample_outputs, action.parameters());
         let outputs = learner.present_outputs(&mut minibatch.batch);

@@ -199,7 +199,10 @@ impl Learner {
 
     fn refresh_pixels(&mut self) {
         if self.stale_pixels {
-            self.networks.load_pixels(&self.pixels.scale());
+            let scale = self.pixels.scale();
+            for stack in std::iter::once(&mut self.networks).chain(&mut self.fisher) {
+                stack.load_pixels(&scale);
+            }
             self.stale_pixels = false;
         }
     }

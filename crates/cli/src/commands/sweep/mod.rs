@@ -69,10 +69,7 @@ pub fn run(args: &SweepArgs) -> Outcome {
         return list(args, &pairs, sweep.parallel);
     }
     can_be_made(&sweep.out)?;
-    if !args.json {
-        note!("hasard: measuring for some seconds how fast this machine is");
-    }
-    let plan = Plan::of(&pairs, sweep.parallel, true)?;
+    let plan = measured(args, &pairs, sweep.parallel)?;
     if args.json {
         say!("{}", plan.object());
     } else {
@@ -274,6 +271,18 @@ fn settings(jobs: &[Job]) -> Result<Vec<TrainConfig>, Failure> {
     jobs.iter().map(rescale::settings).collect()
 }
 
+/// What the runs come to on this machine, which takes some seconds to know.
+fn measured(
+    args: &SweepArgs,
+    pairs: &[(Job, TrainConfig)],
+    parallel: usize,
+) -> Result<Plan, Failure> {
+    if !args.json {
+        note!("hasard: measuring for some seconds how fast this machine is");
+    }
+    Plan::of(pairs, parallel, true)
+}
+
 /// The command lines and what they come to.
 fn list(args: &SweepArgs, pairs: &[(Job, TrainConfig)], parallel: usize) -> Outcome {
     for (job, _) in pairs {
@@ -288,8 +297,7 @@ fn list(args: &SweepArgs, pairs: &[(Job, TrainConfig)], parallel: usize) -> Outc
     }
     if !args.json {
         // Beside the lines, which a script may run.
-        note!("hasard: measuring for some seconds how fast this machine is");
-        note!("hasard: {}", Plan::of(pairs, parallel, true)?.line());
+        note!("hasard: {}", measured(args, pairs, parallel)?.line());
     }
     Ok(())
 }

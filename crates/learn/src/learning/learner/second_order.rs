@@ -55,10 +55,19 @@ impl Learner {
         batch: &mut ModelSequences<'_>,
         parameters: &[f32],
     ) -> Vec<f32> {
+        self.refresh_pixels();
         let Some(fisher) = &mut self.fisher else { return self.policy_outputs(batch, parameters) };
-        fisher.load_pixels(&self.pixels.scale());
         fisher.load_network(0, parameters);
         fisher.forward_network(0, batch)
+    }
+
+    /// The same under the present parameters; where products are not rounded, what actors recorded
+    /// is not computed anew.
+    pub fn fisher_origin(&mut self, batch: &mut ModelSequences<'_>) -> Vec<f32> {
+        if self.fisher.is_none() {
+            return self.present_outputs(batch);
+        }
+        self.fisher_outputs(batch, &self.policy_parameters())
     }
 
     /// The gradient from that of the outputs of the last [`Learner::fisher_outputs`].

@@ -148,11 +148,11 @@ impl Store {
             half.filter(|path| path.extension().is_some_and(|ending| ending == "partial"))
                 .try_for_each(|path| remove(&path))?;
         }
-        let whole: Vec<(PathBuf, Loaded)> = self
+        let whole: Vec<(PathBuf, Progress)> = self
             .numbered("best_")
             .into_iter()
             .filter_map(|path| match Loaded::read(&path) {
-                Ok(loaded) => Some((path, loaded)),
+                Ok(loaded) => Some((path, loaded.progress)),
                 Err(error) => {
                     warn(format!("{error}; it is a candidate no more"));
                     None
@@ -168,7 +168,7 @@ impl Store {
             && let Some((_, left)) = whole.first()
         {
             // The newer checkpoints were damaged, but a candidate is whole: better than nothing.
-            known = left.progress.all_candidates();
+            known = left.all_candidates();
             known.ranked.retain(|one| is_whole(one.frames));
         }
         let chosen = self.directory.parent().and_then(read_selection);
