@@ -1,6 +1,7 @@
 //! What is wrong with a file: all of it, each with its place and its remedy.
 
 use crate::edit_distance;
+use std::collections::HashSet;
 use std::fmt;
 
 /// Most that are listed; who has more sees the rest after mending these.
@@ -34,11 +35,27 @@ pub(super) struct Mistakes {
     added: usize,
     /// What is read.
     text: String,
+    /// What the setting that is read is called, and the places of what the usual one says: a mistake
+    /// found there only now is of this setting, which the place does not say.
+    setting: (String, Vec<usize>),
+    /// What was said of each place, without the setting.
+    said: HashSet<(usize, String)>,
 }
 
 impl Mistakes {
     pub fn new(text: &str) -> Mistakes {
-        Mistakes { found: Vec::new(), added: 0, text: text.to_owned() }
+        Mistakes {
+            found: Vec::new(),
+            added: 0,
+            text: text.to_owned(),
+            setting: Default::default(),
+            said: HashSet::new(),
+        }
+    }
+
+    /// From now on a setting of that name is read, given the places of what the usual one says.
+    pub fn reading(&mut self, setting: &str, usual: &[usize]) {
+        self.setting = (setting.to_owned(), usual.to_vec());
     }
 
     /// The byte of a letter of a drawing that begins at `at`: by its line and column, from 0, where
@@ -74,9 +91,11 @@ impl Mistakes {
     fn note(&mut self, at: usize, warning: bool, text: String) {
         let text: String = text.chars().take(400).flat_map(shown).collect();
         // Levels repeat what they have in common.
-        if self.found.iter().any(|(place, _, said)| *place == at && *said == text) {
+        if !self.said.insert((at, text.clone())) {
             return;
         }
+        let (setting, usual) = &self.setting;
+        let text = if usual.contains(&at) { format!("{setting}{text}") } else { text };
         if self.found.len() < MOST {
             self.found.push((at, warning, text));
         }

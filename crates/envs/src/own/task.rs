@@ -87,12 +87,19 @@ pub fn check(text: &str) -> Checked {
         let mut names = Names::default();
         let mut plans = Vec::new();
         let settings = settings(levels);
-        for (_, setting) in &settings {
+        let mut usual = Vec::new();
+        for (at, (name, setting)) in settings.iter().enumerate() {
             if !mistakes.full() {
                 let document = layers::document(&root, *setting, &mut mistakes);
+                if at == 0 {
+                    usual = document.places();
+                } else {
+                    mistakes.reading(name, &usual);
+                }
                 plans.extend(read::plan(&document, &mut names, &mut mistakes));
             }
         }
+        mistakes.reading("", &[]);
         // What a level, the hard constraint or a rule set has otherwise is tried as well. Without
         // mistakes every setting has its plan.
         let same_map = |one: &Plan, other: &Plan| one.map == other.map && one.zones == other.zones;

@@ -96,6 +96,19 @@ fn of_value(value: &DeValue<'_>, at: usize, depth: usize, mistakes: &mut Mistake
 }
 
 impl Node {
+    /// Where it and all within it stand.
+    pub fn places(&self) -> Vec<usize> {
+        let within: Vec<usize> = match &self.value {
+            Value::List(nodes) => nodes.iter().flat_map(Node::places).collect(),
+            Value::Table(entries) => entries
+                .iter()
+                .flat_map(|entry| [vec![entry.at], entry.node.places()].concat())
+                .collect(),
+            _ => Vec::new(),
+        };
+        [vec![self.at], within].concat()
+    }
+
     /// An empty table.
     pub fn empty() -> Node {
         Node { value: Value::Table(Vec::new()), at: 0 }

@@ -23,6 +23,11 @@ pub struct NetworkConfig {
     pub cell: RecurrentCell,
     /// Policy and critics as networks of their own.
     pub separate: bool,
+    /// Policy and critics see each picture and its mirror image, and say the mean of what follows
+    /// from both, left and right exchanged in the actions: what is learned of one side is learned of
+    /// the other. For twice the arithmetic.
+    #[serde(default)]
+    pub mirror: bool,
     /// Initial weights.
     pub initialisation: Initialisation,
     /// Factor of the initial weights of the policy's last layer. With 0.01 the first policy is

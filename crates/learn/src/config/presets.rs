@@ -59,6 +59,7 @@ impl TrainConfig {
                 recurrent: Some(512),
                 cell: RecurrentCell::Gru,
                 separate,
+                mirror: false,
                 initialisation: match (released, separate) {
                     (false, _) => Initialisation::Orthogonal,
                     (true, false) => Initialisation::OrthogonalHeads,

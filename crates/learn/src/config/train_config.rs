@@ -155,6 +155,9 @@ impl TrainConfig {
                 "0",
             );
         }
+        if predicts && self.network.mirror {
+            return refuse("network.mirror", &"true where depth or labels are predicted", "false");
+        }
         if self.algorithm == AlgorithmKind::Cup
             && learning
                 .cost_gamma

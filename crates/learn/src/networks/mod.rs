@@ -10,6 +10,7 @@ pub mod distribution;
 mod in_parts;
 mod initialise;
 mod layers;
+mod mirror;
 mod network;
 mod pixels;
 mod shape;
@@ -17,6 +18,7 @@ mod shared_network;
 mod stack;
 
 pub use layers::{EncoderLayer, ImageShape};
+pub use mirror::Reflected;
 pub use network::{
     ActingNetwork, LearningNetwork, NetworkWeights, Place, Published, RecordedLane, Recording,
     Sequences,

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::config::{Convolution, RecurrentCell};
 use crate::error::LearnError;
 use crate::networks::layers::{EncoderLayer, ImageShape, STAGE, encoder_layers};
+use crate::networks::mirror::Reflected;
 
 /// Bounds on networks, a hundred times the original's: beyond them a number in a settings file is
 /// surely a slip.
@@ -36,6 +37,10 @@ pub struct NetworkShape {
     pub cell: RecurrentCell,
     /// Outputs of each linear head; they follow each other in the output row.
     pub heads: Vec<usize>,
+    /// Which output of the picture's mirror image each output is averaged with; empty for a network
+    /// that sees no mirror image.
+    #[serde(default)]
+    pub mirror: Vec<Reflected>,
 }
 
 impl Default for NetworkShape {
@@ -53,6 +58,7 @@ impl Default for NetworkShape {
             recurrent: Some(512),
             cell: RecurrentCell::Gru,
             heads: vec![9, 1],
+            mirror: vec![],
         }
     }
 }
@@ -203,7 +209,19 @@ impl NetworkShape {
     /// Numbers of the state carried from step to step.
     #[must_use]
     pub fn state_size(&self) -> usize {
-        self.recurrent.unwrap_or(0) * self.cell.states()
+        self.recurrent.unwrap_or(0) * self.cell.states() * self.passes()
+    }
+
+    /// Passes of one sample: a picture and its mirror image are two.
+    #[must_use]
+    pub fn passes(&self) -> usize {
+        if self.mirror.is_empty() { 1 } else { 2 }
+    }
+
+    /// The network that sees one picture.
+    #[must_use]
+    pub fn plain(&self) -> NetworkShape {
+        NetworkShape { mirror: Vec::new(), ..self.clone() }
     }
 
     /// Columns of the recurrent layer's weights: all gates of all units.
@@ -293,7 +311,8 @@ impl NetworkShape {
             _ => parameter.size() as f64,
         };
         let convolved: f64 = self.encoder_layers().iter().map(EncoderLayer::products).sum();
-        2.0 * (convolved + self.parameters().iter().map(once).sum::<f64>())
+        let products = convolved + self.parameters().iter().map(once).sum::<f64>();
+        2.0 * self.passes() as f64 * products
     }
 
     /// Floating-point operations of forward and backward passes of one sample; nothing flows back
@@ -304,7 +323,7 @@ impl NetworkShape {
             Some(layer) => layer.products(),
             None => (self.features() * self.dense[0]) as f64,
         };
-        3.0 * self.forward_flop() - 2.0 * first
+        3.0 * self.forward_flop() - 2.0 * self.passes() as f64 * first
     }
 }
 

@@ -4,6 +4,8 @@
 
 use std::ops::Range;
 
+use hasard_envs::ActionSpace;
+
 use crate::config::NetworkConfig;
 use crate::error::LearnError;
 #[cfg(feature = "graphics")]
@@ -14,6 +16,7 @@ use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::in_parts::InParts;
 use crate::networks::layers::ImageShape;
+use crate::networks::mirror::{MirroredActor, MirroredLearner, Reflected, reflections};
 use crate::networks::network::{
     ActingNetwork, LearningNetwork, Place, Published, RecordedLane, Recording, Sequences, states_of,
 };
@@ -61,6 +64,7 @@ impl ModelShape {
             recurrent: config.recurrent,
             cell: config.cell,
             heads,
+            mirror: vec![],
         };
         let heads =
             std::iter::once(action.parameters()).chain(std::iter::repeat_n(1, 1 + cost_critics));
@@ -94,6 +98,33 @@ impl ModelShape {
             self.auxiliary = outputs;
             self.networks[0].heads.push(outputs);
             self.networks[0].check()?;
+        }
+        Ok(self)
+    }
+
+    /// The same with networks that see each picture's mirror image too, if that is wanted, given the
+    /// buttons behind the actions.
+    ///
+    /// # Errors
+    /// When these are unknown, or have a side without the other.
+    pub fn with_mirror(
+        mut self,
+        wanted: bool,
+        space: Option<&ActionSpace>,
+    ) -> Result<ModelShape, LearnError> {
+        if wanted {
+            let unknown = || {
+                LearnError::Config(
+                    "network.mirror is on, but the buttons of these worlds are unknown; use false"
+                        .into(),
+                )
+            };
+            let mut policy = reflections(space.ok_or_else(unknown)?)?;
+            for network in &mut self.networks {
+                let own = (policy.len()..network.outputs())
+                    .map(|column| Reflected { column, opposite: false });
+                network.mirror = std::mem::take(&mut policy).into_iter().chain(own).collect();
+            }
         }
         Ok(self)
     }
@@ -198,12 +229,18 @@ impl Actor {
     /// An actor on a device.
     #[must_use]
     pub fn new(shape: &ModelShape, device: &ComputeDevice) -> Actor {
-        let network = |shape: &NetworkShape| -> Box<dyn ActingNetwork> {
+        let plain = |shape: &NetworkShape| -> Box<dyn ActingNetwork> {
             match device {
                 ComputeDevice::Processor(kernels) => Box::new(CpuActor::new(*kernels, shape)),
                 #[cfg(feature = "graphics")]
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
+        };
+        let network = |shape: &NetworkShape| -> Box<dyn ActingNetwork> {
+            if shape.mirror.is_empty() {
+                return plain(shape);
+            }
+            Box::new(MirroredActor::new(shape, plain(&shape.plain())))
         };
         Actor {
             networks: shape.networks.iter().map(network).collect(),
@@ -320,7 +357,7 @@ impl Stack {
     /// Networks on a device; on the processor they use `threads` threads.
     #[must_use]
     pub fn new(shape: &ModelShape, device: &ComputeDevice, threads: usize) -> Stack {
-        let network = |shape: &NetworkShape| -> Box<dyn LearningNetwork> {
+        let plain = |shape: &NetworkShape| -> Box<dyn LearningNetwork> {
             match device {
                 ComputeDevice::Processor(kernels) => {
                     Box::new(CpuLearner::new(*kernels, shape, threads))
@@ -328,6 +365,12 @@ impl Stack {
                 #[cfg(feature = "graphics")]
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
+        };
+        let network = |shape: &NetworkShape| -> Box<dyn LearningNetwork> {
+            if shape.mirror.is_empty() {
+                return plain(shape);
+            }
+            Box::new(MirroredLearner::new(shape, plain(&shape.plain())))
         };
         Stack {
             networks: shape.networks.iter().map(network).collect(),

@@ -248,7 +248,8 @@ impl TrainedPolicy {
         check_fits: impl FnOnce(&ModelShape) -> Result<(), LearnError>,
         restore: impl FnOnce(&mut Learner) -> Result<(), LearnError>,
     ) -> Result<TrainedPolicy, LearnError> {
-        if let Some(own) = config.env.action_space()?.map(|space| ActionShape::from(&space))
+        let space = config.env.action_space()?;
+        if let Some(own) = space.as_ref().map(ActionShape::from)
             && own != action
         {
             return Err(LearnError::Config(format!(
@@ -268,7 +269,8 @@ impl TrainedPolicy {
             shaping(&config).extra_inputs(),
             &config.network,
         )?
-        .with_critic_inputs(Privileged::new(&config).count())?;
+        .with_critic_inputs(Privileged::new(&config).count())?
+        .with_mirror(config.network.mirror, space.as_ref())?;
         // Before memory is taken for as many weights as the settings speak of.
         check_fits(&shape)?;
         // Wherever it was trained, and by whatever products, it acts on every processor.

@@ -104,7 +104,8 @@ pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, 
     )?;
     shape
         .with_critic_inputs(Privileged::new(config).count())?
-        .with_auxiliary(Auxiliary::new(config).outputs())
+        .with_auxiliary(Auxiliary::new(config).outputs())?
+        .with_mirror(config.network.mirror, config.env.action_space()?.as_ref())
 }
 
 impl Session {

@@ -18,6 +18,7 @@ pub fn small_shapes() -> Vec<(&'static str, NetworkShape)> {
         recurrent: Some(32),
         cell: RecurrentCell::Gru,
         heads: vec![3, 2],
+        mirror: vec![],
     };
     vec![
         ("overlapping kernels, extra input, two dense layers", small.clone()),

@@ -286,6 +286,7 @@ impl Config {
             ("learning.auxiliary_depth", "0"),
             ("learning.auxiliary_labels", "0"),
             ("network.policy_scale", "1"),
+            ("network.mirror", "false"),
             ("learning.advantage_floor", "0"),
             ("budget_margin", "0"),
         ] {
