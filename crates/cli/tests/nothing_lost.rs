@@ -186,6 +186,32 @@ fn a_sweep_does_not_take_a_run_of_other_settings_for_its_own() {
     assert!(folder.refused("sweep s.toml").contains("128 frames"));
 }
 
+/// A sweep over a run that somebody trains for longer cut it short; one over a run that had been made
+/// longer took it for any other.
+#[test]
+fn a_sweep_leaves_longer_runs_alone_and_knows_what_they_were_trained_with() {
+    let folder = Folder::new("sweep_longer");
+    folder.file("s.toml", sweep("").as_bytes());
+    folder.ok("sweep s.toml");
+    let path = "runs/RemedyRushLevel1-v0/PPO";
+    let run = std::fs::read_dir(folder.0.join(path)).unwrap().next().unwrap().unwrap().path();
+    let run = format!("{path}/{}/seed1", run.file_name().unwrap().to_string_lossy());
+    folder.ok(&format!("train RemedyRushLevel1-v0 --resume --frames 128 --out {run} --quiet"));
+    let mirrored = sweep("network.mirror = true\n").replace("frames = 64", "frames = 128");
+    folder.file("m.toml", mirrored.as_bytes());
+    let said = folder.refused("sweep m.toml");
+    assert!(said.contains("network.mirror = false"), "{said}");
+    // It is under way to 6,400 frames.
+    let config = text(&folder, &format!("{run}/config.json"));
+    let longer = config.replace("\"frames\": 128,", "\"frames\": 6400,");
+    assert_ne!(longer, config);
+    folder.file(&format!("{run}/config.json"), longer.as_bytes());
+    folder.file("s.toml", sweep("").replace("frames = 64", "frames = 256").as_bytes());
+    let said = folder.refused("sweep s.toml");
+    assert!(said.contains("6400 frames that has not ended") && said.contains("--resume"), "{said}");
+    assert_eq!(text(&folder, &format!("{run}/config.json")), longer, "nothing is changed");
+}
+
 /// `HASARD_SIMD` chooses what a run that begins multiplies in; one that goes on keeps to its own.
 #[test]
 fn a_resumed_run_keeps_its_products() {

@@ -114,6 +114,20 @@ fn tasks_that_cannot_be_trained_together_are_refused_before_the_first_frame() {
     folder.file("levels.toml", levels.as_bytes());
     let line = folder.refused("train levels.toml --curriculum 1:64,2:64 --out run");
     assert!(line.contains("level 2 has other buttons than level 1"), "{line}");
+    // As many choices, but of other buttons: outputs would change what they stand for.
+    let swapped = more.replace("], [\"USE\"]]", "]]").replace("MOVE_FORWARD", "MOVE_BACKWARD");
+    folder.file("swapped.toml", (text.clone() + &swapped).as_bytes());
+    let line = folder.refused("train swapped.toml --curriculum 1:64,2:64 --out run");
+    assert!(line.contains("level 2 has other buttons than level 1"), "{line}");
+    // A side without the other has no mirror image.
+    let lame = text.replace("[\"TURN_LEFT\", \"TURN_RIGHT\"]", "[\"TURN_LEFT\"], [\"TURN_RIGHT\"]");
+    assert_ne!(lame, text);
+    folder.file("lame.toml", lame.as_bytes());
+    let line = folder.refused("train lame.toml --frames 64 --set network.mirror=true --out run");
+    assert!(
+        line.contains("TURN_LEFT has no TURN_RIGHT") && line.contains("in one group"),
+        "{line}"
+    );
     std::fs::write(folder.0.join("other.toml"), text + "\n# another file\n").unwrap();
     let line = folder.refused("train garden.toml,other.toml --frames 64 --out run");
     assert!(line.contains("garden.toml and other.toml are both"), "{line}");

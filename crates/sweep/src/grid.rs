@@ -141,6 +141,13 @@ impl Sweep {
                     *text = scaled(frames).to_string();
                 }
             }
+            let lengths = ["evaluation.every", "learning.schedule_frames"];
+            let own = grid.settings.iter_mut();
+            for (_, value) in own.filter(|(name, _)| lengths.contains(&name.as_str())) {
+                if let Ok(frames @ 1..) = value.parse::<u64>() {
+                    *value = scaled(frames).to_string();
+                }
+            }
         }
     }
 
@@ -262,8 +269,11 @@ impl Grid {
                 ));
             }
         }
-        if let Some(level) = self.levels.iter().find(|level| !(1..=3).contains(*level)) {
-            return Err(format!("level {level} does not exist; levels are 1, 2, 3"));
+        // Tasks of one's own may have up to nine.
+        let own = self.scenarios.iter().all(|environment| environment.contains(".toml"));
+        let last = if own { 9 } else { 3 };
+        if let Some(level) = self.levels.iter().find(|level| !(1..=last).contains(*level)) {
+            return Err(format!("level {level} does not exist; levels are 1 to {last}"));
         }
         if let Some(algorithm) = self.algorithms.iter().find(|algorithm| !plain(algorithm)) {
             return Err(format!("`{algorithm}` is no name of an algorithm"));

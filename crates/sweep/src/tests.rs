@@ -31,6 +31,38 @@ fn a_grid_expands_to_every_combination_once() {
     assert_eq!(directories.len(), jobs.len());
 }
 
+/// A factor of the frames is one of every length that is given in frames, by option or setting.
+#[test]
+fn scaled_sweeps_scale_all_their_lengths() {
+    let text = "scenarios = ['RemedyRush']\nalgorithms = ['PPO']\nframes = 2_000_000\n[options]\neval-every = 500_000\n\
+                [settings]\nlearning.schedule_frames = 4_000_000\nevaluation.every = 100_000\nevaluation.episodes = 8\n";
+    let mut sweep = Sweep::parse(text).unwrap();
+    sweep.scale_frames(0.01);
+    let line = sweep.jobs().unwrap()[0].command_line("hasard");
+    for part in
+        ["--frames 20000 ", "--eval-every 5000", "schedule_frames=40000 ", "evaluation.every=1000 "]
+    {
+        assert!(line.contains(part), "{part}: {line}");
+    }
+    assert!(line.contains("evaluation.episodes=8"), "{line}");
+}
+
+/// The benchmark's scenarios have three levels, a task of one's own up to nine.
+#[test]
+fn own_tasks_have_levels_beyond_the_third() {
+    let jobs = |scenarios: &str, level: u32| {
+        let text = format!(
+            "scenarios = {scenarios}\nlevels = [{level}]\nalgorithms = ['PPO']\nframes = 64\n"
+        );
+        Sweep::parse(&text).and_then(|sweep| sweep.jobs())
+    };
+    assert_eq!(jobs("['own.toml']", 9).unwrap().len(), 1);
+    assert!(jobs("['own.toml']", 10).unwrap_err().contains("levels are 1 to 9"));
+    for built_in in ["['RemedyRush']", "['own.toml', 'RemedyRush']"] {
+        assert!(jobs(built_in, 4).unwrap_err().contains("levels are 1 to 3"), "{built_in}");
+    }
+}
+
 #[test]
 fn settings_go_into_every_command_and_no_folder() {
     let text = "experiment = 'quick'\nseeds = [11]\n[settings]\nlearning.products = 'bfloat16'\n\

@@ -87,6 +87,13 @@ pub(super) fn check(
     }
 }
 
+/// The places of a text outside all layers: what holds in every setting that no layer changes.
+pub(super) fn places_outside(root: &Node) -> Vec<usize> {
+    let Value::Table(entries) = &root.value else { return Vec::new() };
+    let outside = entries.iter().filter(|entry| !LAYERS.contains(&&*entry.key));
+    outside.flat_map(|entry| [vec![entry.at], entry.node.places()].concat()).collect()
+}
+
 /// The document of a setting. Layers within layers count after those around them: `[levels.2.hard]`
 /// after `[levels.2]` and `[hard]`.
 pub(super) fn document(root: &Node, setting: Setting, mistakes: &mut Mistakes) -> Node {

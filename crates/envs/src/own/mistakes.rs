@@ -1,7 +1,8 @@
 //! What is wrong with a file: all of it, each with its place and its remedy.
 
 use crate::edit_distance;
-use std::collections::HashSet;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// Most that are listed; who has more sees the rest after mending these.
@@ -35,11 +36,10 @@ pub(super) struct Mistakes {
     added: usize,
     /// What is read.
     text: String,
-    /// What the setting that is read is called, and the places of what the usual one says: a mistake
-    /// found there only now is of this setting, which the place does not say.
-    setting: (String, Vec<usize>),
-    /// What was said of each place, without the setting.
-    said: HashSet<(usize, String)>,
+    /// The setting that is read, by its number.
+    setting: Option<usize>,
+    /// In which settings something was said of a place.
+    said: BTreeMap<(usize, String), Vec<usize>>,
 }
 
 impl Mistakes {
@@ -48,14 +48,29 @@ impl Mistakes {
             found: Vec::new(),
             added: 0,
             text: text.to_owned(),
-            setting: Default::default(),
-            said: HashSet::new(),
+            setting: None,
+            said: BTreeMap::new(),
         }
     }
 
-    /// From now on a setting of that name is read, given the places of what the usual one says.
-    pub fn reading(&mut self, setting: &str, usual: &[usize]) {
-        self.setting = (setting.to_owned(), usual.to_vec());
+    /// From now on the setting of this number is read, or what all have.
+    pub fn reading(&mut self, setting: Option<usize>) {
+        self.setting = setting;
+    }
+
+    /// Puts what `name` makes of the settings in which something is wrong before what is wrong, where
+    /// the place is one of `common`, which are outside all layers and say nothing of it. With a list
+    /// that is full nobody knows in which settings it is.
+    pub fn name_settings(&mut self, common: &[usize], name: impl Fn(&[usize]) -> String) {
+        if self.full() {
+            return;
+        }
+        let common: BTreeSet<usize> = common.iter().copied().collect();
+        for (at, _, text) in self.found.iter_mut().filter(|(at, ..)| common.contains(at)) {
+            if let Some(settings) = self.said.get(&(*at, text.clone())) {
+                text.insert_str(0, &name(settings));
+            }
+        }
     }
 
     /// The byte of a letter of a drawing that begins at `at`: by its line and column, from 0, where
@@ -91,14 +106,14 @@ impl Mistakes {
     fn note(&mut self, at: usize, warning: bool, text: String) {
         let text: String = text.chars().take(400).flat_map(shown).collect();
         // Levels repeat what they have in common.
-        if !self.said.insert((at, text.clone())) {
+        let settings = self.said.entry((at, text.clone()));
+        let repeated = matches!(settings, Entry::Occupied(_));
+        let settings = settings.or_default();
+        settings.extend(self.setting.filter(|own| settings.last() != Some(own)));
+        if repeated || self.full() {
             return;
         }
-        let (setting, usual) = &self.setting;
-        let text = if usual.contains(&at) { format!("{setting}{text}") } else { text };
-        if self.found.len() < MOST {
-            self.found.push((at, warning, text));
-        }
+        self.found.push((at, warning, text));
     }
 
     /// Whether there are as many as are listed.

@@ -16,6 +16,7 @@ use crate::spaces::action::Controls;
 use crate::{CostTerm, EnvError, RuleSet, Scenario};
 use hasard_engine::map::{Map, MapSource};
 use hasard_engine::world::World;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -87,19 +88,15 @@ pub fn check(text: &str) -> Checked {
         let mut names = Names::default();
         let mut plans = Vec::new();
         let settings = settings(levels);
-        let mut usual = Vec::new();
-        for (at, (name, setting)) in settings.iter().enumerate() {
+        for (at, (_, setting)) in settings.iter().enumerate() {
             if !mistakes.full() {
+                mistakes.reading(Some(at));
                 let document = layers::document(&root, *setting, &mut mistakes);
-                if at == 0 {
-                    usual = document.places();
-                } else {
-                    mistakes.reading(name, &usual);
-                }
                 plans.extend(read::plan(&document, &mut names, &mut mistakes));
             }
         }
-        mistakes.reading("", &[]);
+        mistakes.reading(None);
+        mistakes.name_settings(&layers::places_outside(&root), |which| name_of(which, &settings));
         // What a level, the hard constraint or a rule set has otherwise is tried as well. Without
         // mistakes every setting has its plan.
         let same_map = |one: &Plan, other: &Plan| one.map == other.map && one.zones == other.zones;
@@ -147,6 +144,38 @@ fn settings(levels: u8) -> Vec<(String, Setting)> {
         }
     }
     all
+}
+
+/// How a message names several settings: by what sets them apart from the others, or else by the
+/// first; nothing where they are all.
+fn name_of(which: &[usize], settings: &[(String, Setting)]) -> String {
+    let distinct = |of: &[Setting]| {
+        let levels: BTreeSet<u8> = of.iter().map(|one| one.level).collect();
+        let rules: BTreeSet<&str> = of.iter().map(|one| one.rules.name()).collect();
+        let hard: BTreeSet<bool> = of.iter().map(|one| one.hard).collect();
+        (levels, rules, hard)
+    };
+    let own: Vec<Setting> = which.iter().map(|&at| settings[at].1).collect();
+    let all: Vec<Setting> = settings.iter().map(|(_, setting)| *setting).collect();
+    let ((levels, rules, hard), (all_levels, all_rules, all_hard)) =
+        (distinct(&own), distinct(&all));
+    if own.len() != levels.len() * rules.len() * hard.len() {
+        return which.first().map_or_else(String::new, |&at| settings[at].0.clone());
+    }
+    let mut parts = Vec::new();
+    if levels.len() < all_levels.len() {
+        let numbers: Vec<String> = levels.iter().map(u8::to_string).collect();
+        let word = if numbers.len() == 1 { "level" } else { "levels" };
+        parts.push(format!("{word} {}", numbers.join(", ")));
+    }
+    if rules.len() < all_rules.len() {
+        let names: Vec<&str> = rules.iter().copied().collect();
+        parts.push(format!("--rules {}", names.join(" or ")));
+    }
+    if hard.len() < all_hard.len() {
+        parts.push(if hard.contains(&true) { "--hard" } else { "without --hard" }.into());
+    }
+    if parts.is_empty() { String::new() } else { format!("{}: ", parts.join(", ")) }
 }
 
 /// Number of levels: the highest that the file speaks of, 0 if it speaks of none.

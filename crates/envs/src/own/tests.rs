@@ -203,6 +203,14 @@ fn a_mistake_of_one_setting_names_it() {
         ("[levels.2]\nmap.legend.\"~\".zone = \"water\"\n", "level 2: "),
         ("[hard]\nmap.legend.\"~\".zone = \"water\"\n", "--hard: "),
         ("[levels.2.hard]\nmap.legend.\"~\".zone = \"water\"\n", "level 2, --hard: "),
+        ("[levels.1]\nmap.legend.\"~\".zone = \"water\"\n[levels.2]\n", "level 1: "),
+        ("[levels.1.hard]\nmap.legend.\"~\".zone = \"water\"\n[levels.3]\n", "level 1, --hard: "),
+        ("[hard]\nmap.legend.\"~\".zone = \"water\"\n[levels.2]\n", "--hard: "),
+        (
+            "[levels.2]\nmap.legend.\"~\".zone = \"water\"\n[levels.3]\nmap.legend.\"~\".zone = \"water\"\n",
+            "levels 2, 3: ",
+        ),
+        ("[rules.tables]\nmap.legend.\"~\".zone = \"water\"\n", "--rules tables: "),
         ("[levels.2]\nspawn = [{ kind = \"Nothing\" }]\n", "kind of thing `Nothing`"),
     ] {
         let listed = listed(rest);

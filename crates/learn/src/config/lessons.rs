@@ -42,8 +42,7 @@ impl TrainConfig {
         let space = |index: usize| self.lesson(index).env.action_space();
         let first = if self.curriculum.is_empty() { None } else { space(0)? };
         for (index, lesson) in self.curriculum.iter().enumerate().skip(1) {
-            let (first, other) = (first.as_ref().map(|one| one.sizes()), space(index)?);
-            if first != other.as_ref().map(|one| one.sizes()) {
+            if first != space(index)? {
                 return Err(LearnError::Config(format!(
                     "--curriculum: level {} has other buttons than level {}; give levels of a file the same, or train on one",
                     lesson.level, self.curriculum[0].level

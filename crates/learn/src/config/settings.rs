@@ -194,8 +194,8 @@ impl TrainConfig {
     }
 
     /// The first setting that two runs of the same seed have learned by differently, with the value
-    /// of each; those of the machine, of reports and evaluations, and the length do not count. Of a
-    /// run that was changed on its way nothing is said.
+    /// of each; those of the machine, of reports and evaluations, the length, and what was changed on
+    /// the way of either do not count.
     #[must_use]
     pub fn unlike(&self, other: &TrainConfig) -> Option<(String, Value, Value)> {
         self.all_unlike(other).into_iter().next()
@@ -207,15 +207,17 @@ impl TrainConfig {
         let elsewhere = ["frames", "device", "env.maps", "env.iwad", "learning.schedule_frames"];
         let machine =
             |name: &str| CHANGE_NOTHING.iter().chain(&elsewhere).any(|group| within(name, group));
+        let changed = |name: &str| {
+            let mut changes = self.changes.iter().chain(&other.changes);
+            changes.any(|change| within(name, &change.setting) || within(&change.setting, name))
+        };
         let mut found = Vec::new();
-        if let (true, Ok(own), Ok(others)) = (
-            self.changes.is_empty() && other.changes.is_empty(),
-            serde_json::to_value(self),
-            serde_json::to_value(other),
-        ) {
+        if let (Ok(own), Ok(others)) = (serde_json::to_value(self), serde_json::to_value(other)) {
             differences("", &own, &others, &mut found);
         }
-        found.retain(|(name, ..)| name != "version" && !machine(name));
+        found.retain(|(name, ..)| {
+            !["version", "changes"].contains(&name.as_str()) && !machine(name) && !changed(name)
+        });
         found
     }
 

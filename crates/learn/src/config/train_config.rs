@@ -9,6 +9,7 @@ use crate::config::constraint::find_terms;
 use crate::config::curriculum::Lesson;
 use crate::config::names::names;
 use crate::config::numbers::{Shown, check_number, refuse};
+use crate::config::reflection::reflections;
 use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, CriticInput, EnvConfig,
     EvaluationConfig, InitFrom, LearningConfig, NetworkConfig, Products, ReportingConfig,
@@ -157,6 +158,11 @@ impl TrainConfig {
         }
         if predicts && self.network.mirror {
             return refuse("network.mirror", &"true where depth or labels are predicted", "false");
+        }
+        if self.network.mirror
+            && let Some(space) = self.env.action_space()?
+        {
+            reflections(&space)?;
         }
         if self.algorithm == AlgorithmKind::Cup
             && learning

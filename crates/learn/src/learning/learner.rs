@@ -80,11 +80,12 @@ impl Learner {
             .collect();
         // The policy is the first head of the first network, at the front of the vector.
         shape.networks[0].scale_head(0, config.network.policy_scale as f32, &mut parameters);
+        let passes = shape.networks[0].passes();
         let stack = |shape: &ModelShape, device: &ComputeDevice| {
             let whole = Stack::new(shape, device, config.learning.threads);
             match (config.learning.recurrence, device.is_card()) {
-                (Some(_), _) => whole.in_parts(MOST_ROWS),
-                (None, true) => whole.in_parts(MOST_ROWS_ON_A_CARD),
+                (Some(_), _) => whole.in_parts(MOST_ROWS / passes),
+                (None, true) => whole.in_parts(MOST_ROWS_ON_A_CARD / passes),
                 (None, false) => whole,
             }
         };

@@ -18,7 +18,6 @@ mod shared_network;
 mod stack;
 
 pub use layers::{EncoderLayer, ImageShape};
-pub use mirror::Reflected;
 pub use network::{
     ActingNetwork, LearningNetwork, NetworkWeights, Place, Published, RecordedLane, Recording,
     Sequences,

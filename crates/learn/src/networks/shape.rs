@@ -2,10 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::{Convolution, RecurrentCell};
+use crate::config::{Convolution, RecurrentCell, Reflected};
 use crate::error::LearnError;
 use crate::networks::layers::{EncoderLayer, ImageShape, STAGE, encoder_layers};
-use crate::networks::mirror::Reflected;
 
 /// Bounds on networks, a hundred times the original's: beyond them a number in a settings file is
 /// surely a slip.

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use hasard_envs::ActionSpace;
 
-use crate::config::NetworkConfig;
+use crate::config::{NetworkConfig, Reflected, reflections};
 use crate::error::LearnError;
 #[cfg(feature = "graphics")]
 use crate::networks::burn_network::BurnNetwork;
@@ -16,7 +16,7 @@ use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::in_parts::InParts;
 use crate::networks::layers::ImageShape;
-use crate::networks::mirror::{MirroredActor, MirroredLearner, Reflected, reflections};
+use crate::networks::mirror::{MirroredActor, MirroredLearner};
 use crate::networks::network::{
     ActingNetwork, LearningNetwork, Place, Published, RecordedLane, Recording, Sequences, states_of,
 };

@@ -10,7 +10,8 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt::{self, Manner};
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
 use hasard_learn::runs::run_directory::read_config;
-use hasard_sweep::{Event, Job, OptionValue, Stop, Summary, Sweep, paper, run_jobs};
+use hasard_media::shell::quote;
+use hasard_sweep::{Event, Job, OptionValue, State, Stop, Summary, Sweep, paper, run_jobs};
 use plan::Plan;
 use progress::Progress;
 use serde_json::json;
@@ -133,7 +134,17 @@ fn fits<'a>(job: &'a Job, config: &TrainConfig) -> Result<Option<(&'a Job, u64)>
     // Runs of older versions do not say what they began with; the name of their folder does.
     found.init_from = found.init_from.or(config.init_from.clone());
     match found.unlike(&config.clone().begun()) {
-        None => Ok((found.frames > config.frames).then_some((job, found.frames))),
+        None if found.frames <= config.frames => Ok(None),
+        None if job.state() == State::Finished => Ok(Some((job, found.frames))),
+        None => Err(Failure::bad(format!(
+            "{}: is a run of {} frames that has not ended, and the sweep asks for {}; choose another `out`, or end that run first with \
+             hasard train {} --resume --out {}",
+            job.directory.display(),
+            found.frames,
+            config.frames,
+            config.env.id,
+            quote(&job.directory)
+        ))),
         Some((name, was, wanted)) => Err(Failure::bad(format!(
             "{}: was trained with {name} = {was}, the sweep asks for {wanted}; choose another `out`, or move that run away",
             job.directory.display()

@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::settings::Elsewhere;
-use hasard_engine::simd::Simd;
 use hasard_envs::EnvOptions;
 use hasard_learn::config::{EnvConfig, TrainConfig};
+use hasard_learn::networks::device::ComputeDevice;
 use hasard_learn::runs::measure::measure;
 use hasard_sweep::{Job, State};
 use serde_json::{Value, json};
@@ -39,16 +39,21 @@ pub struct Plan {
 
 /// The kind of a run as far as its speed goes.
 fn kind(config: &TrainConfig) -> String {
-    let (env, network) = (&config.env, &config.network);
+    let (env, learning) = (&config.env, &config.learning);
+    let network = serde_json::to_string(&config.network).unwrap_or_default();
+    let sampling = serde_json::to_string(&config.sampling).unwrap_or_default();
     format!(
-        "{} {} {} {:?} {} {:?} {:?}",
+        "{} {} {} {:?} {} {network} {sampling} {} {} {:?} {} {}",
         config.algorithm,
         config.preset,
         env.observation,
         env.size,
         env.full_actions,
-        network.convolutions,
-        network.dense
+        learning.epochs,
+        learning.minibatches,
+        learning.recurrence,
+        learning.products,
+        learning.portable,
     )
 }
 
@@ -66,12 +71,13 @@ impl Plan {
         let mut kinds: BTreeMap<String, (&TrainConfig, u64)> = BTreeMap::new();
         for (job, config) in jobs {
             plan.frames = plan.frames.saturating_add(job.frames);
-            let done = match job.state() {
+            let state = job.state();
+            let done = match state {
                 State::Finished => job.frames,
                 State::Unfinished(frames) => frames.min(job.frames),
                 State::New => 0,
             };
-            plan.finished += usize::from(done == job.frames);
+            plan.finished += usize::from(state == State::Finished);
             let left = job.frames - done;
             plan.left = plan.left.saturating_add(left);
             if left > 0 {
@@ -143,7 +149,7 @@ impl Plan {
 fn tried(config: &TrainConfig, options: &EnvOptions, seconds: f64) -> Result<(f64, u64), Failure> {
     let config = &of_short_updates(config);
     let make = |env: &EnvConfig, worlds| env.worlds(options, worlds);
-    let kernels = Simd::chosen().map_err(Failure::bad)?;
+    let kernels = ComputeDevice::of(config).map_err(Failure::bad)?.kernels();
     let loops = measure(kernels, config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
     let rate = loops.steps_per_second * f64::from(config.env.frame_skip);
     Ok((rate, loops.checkpoint_bytes * (config.reporting.keep as u64 + 1)))

@@ -25,6 +25,20 @@ fn runs_are_unlike_by_what_they_learn_with() {
     assert_eq!((name.as_str(), own, others), ("learning.gamma", 0.97.into(), 0.5.into()));
 }
 
+/// A run that was extended, or had its rate changed on the way, is unlike others in all else.
+#[test]
+fn a_change_on_the_way_hides_no_other_difference() {
+    let one = config(Preset::Quick).with_all(&all(&["network.mirror=true"])).unwrap();
+    let longer = one.resumed_with(&all(&["frames=20000000", "learning.rate=0.01"]), 5).unwrap();
+    assert!(longer.changes.len() > 1, "{:?}", longer.changes);
+    assert_eq!(longer.unlike(&one), None);
+    let plain = config(Preset::Quick);
+    for (own, other) in [(&longer, &plain), (&plain, &longer)] {
+        let names: Vec<String> = own.all_unlike(other).into_iter().map(|(name, ..)| name).collect();
+        assert_eq!(names, ["network.mirror"]);
+    }
+}
+
 #[test]
 fn a_learning_rate_without_an_end_is_constant() {
     for preset in [Preset::Paper, Preset::Quick] {

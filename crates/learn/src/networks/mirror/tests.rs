@@ -1,10 +1,11 @@
 use super::*;
 use crate::algorithms::small;
-use crate::config::{AlgorithmKind, Convolution, EnvConfig, RecurrentCell};
+use crate::config::{AlgorithmKind, Convolution, EnvConfig, RecurrentCell, reflections};
 use crate::networks::cpu::network::{CpuActor, CpuLearner};
 use crate::networks::network::Recording;
 use crate::random::{Purpose, Stream};
 use hasard_engine::simd::Simd;
+use hasard_envs::{ActionSpace, DeltaButton};
 
 const STEPS: usize = 4;
 const LANES: usize = 3;

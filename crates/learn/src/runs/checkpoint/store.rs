@@ -145,6 +145,8 @@ impl Store {
     ) -> Result<Candidates, LearnError> {
         if let Ok(entries) = fs::read_dir(&self.directory) {
             let half = entries.filter_map(|entry| Some(entry.ok()?.path()));
+            // A file of another program's that ends so is left alone.
+            let half = half.filter(|path| path.is_dir());
             half.filter(|path| path.extension().is_some_and(|ending| ending == "partial"))
                 .try_for_each(|path| remove(&path))?;
         }
