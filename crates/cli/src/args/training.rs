@@ -43,8 +43,8 @@ pub struct TrainArgs {
     /// names
     #[arg(long, value_name = "LEVELS")]
     pub curriculum: Option<String>,
-    /// Begin with the weights and normalisers of another run, or of an agent: a file that
-    /// export-agent wrote, or zoo:NAME
+    /// Begin with the newest weights and normalisers of another run, or with those of an agent: a
+    /// file that export-agent wrote, or zoo:NAME
     #[arg(long, value_name = "RUN")]
     pub init_from: Option<PathBuf>,
     /// Cost that an episode may have; TERM=COST for one named cost term alone, several times for

@@ -183,3 +183,6 @@ pub(super) fn unknown<'a>(
         _ => format!("{what} `{word}` is unknown; write one of {}, ...", known[..8].join(", ")),
     }
 }
+
+#[cfg(test)]
+mod tests;

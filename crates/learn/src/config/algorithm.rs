@@ -141,7 +141,8 @@ pub struct AlgorithmConfig {
     /// of training, as the cube of its progress, an excess then counts by its share of the budget,
     /// so that a tenth of the budget moves a multiplier ten times as fast; before, it does not,
     /// since an agent that is held back early never learns to earn. In `quick` it is 450 for runs of
-    /// 2 million frames, and less with the root of their length: 201 for 10 million.
+    /// 2 million frames, and less with the root of their length: 201 for 10 million; in Collateral
+    /// Damage 45 for 10 million.
     #[serde(default, alias = "multiplier_reference_budget")]
     pub pid_reference_budget: Option<f64>,
     /// P3O: weight of the penalty.
