@@ -40,7 +40,7 @@ fn scaled_sweeps_scale_all_their_lengths() {
     sweep.scale_frames(0.01);
     let line = sweep.jobs().unwrap()[0].command_line("hasard");
     for part in
-        ["--frames 20000 ", "--eval-every 5000", "schedule_frames=40000 ", "evaluation.every=1000 "]
+        ["--frames 20000 ", "--eval-every 5000", "schedule_frames=40000", "evaluation.every=1000 "]
     {
         assert!(line.contains(part), "{part}: {line}");
     }
