@@ -14,6 +14,34 @@ pub struct Browser {
     session: String,
 }
 
+/// A driver and its port, which it picks: one picked here could be another test's by the time it
+/// starts. `None` if it ends before it says one.
+fn start_driver() -> Option<(Child, u16)> {
+    let mut driver = Command::new("chromedriver")
+        .arg("--port=0")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let said = BufReader::new(driver.stdout.take().unwrap());
+    let (send, port) = std::sync::mpsc::channel();
+    // Read to its end, so that the driver does not wait for a reader, nor find none.
+    std::thread::spawn(move || {
+        for line in said.lines().map_while(Result::ok) {
+            let port = line.split("successfully on port ").nth(1);
+            if let Some(Ok(port)) = port.map(|port| port.trim_end_matches('.').parse()) {
+                let _ = send.send(port);
+            }
+        }
+    });
+    let Ok(port) = port.recv_timeout(Duration::from_secs(30)) else {
+        let _ = driver.kill();
+        let _ = driver.wait();
+        return None;
+    };
+    Some((driver, port))
+}
+
 impl Browser {
     /// Opens a window, or says why there is none.
     pub fn open(width: u32, height: u32, dark: bool) -> Option<Browser> {
@@ -25,25 +53,9 @@ impl Browser {
             );
             return None;
         }
-        // The driver picks its port: one picked here could be another test's by the time it starts.
-        let mut driver = Command::new("chromedriver")
-            .arg("--port=0")
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let said = BufReader::new(driver.stdout.take().unwrap());
-        let (send, port) = std::sync::mpsc::channel();
-        // Read to its end, so that the driver does not wait for a reader, nor find none.
-        std::thread::spawn(move || {
-            for line in said.lines().map_while(Result::ok) {
-                let port = line.split("successfully on port ").nth(1);
-                if let Some(Ok(port)) = port.map(|port| port.trim_end_matches('.').parse()) {
-                    let _ = send.send(port);
-                }
-            }
-        });
-        let port = port.recv_timeout(Duration::from_secs(30)).expect("chromedriver says no port");
+        // A driver whose port another one takes in the same moment ends without a word.
+        let (driver, port) =
+            (0..5).find_map(|_| start_driver()).expect("chromedriver says no port");
         let mut browser = Browser { driver, port, session: String::new() };
         let mut args = vec![
             "--headless=new".to_owned(),
