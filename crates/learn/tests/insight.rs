@@ -8,10 +8,9 @@ use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, Which};
 use hasard_learn::runs::agent_file::export;
 use hasard_learn::runs::session::{Beginning, Session};
-use hasard_learn::runs::trainer::{Hooks, Start, train};
+use hasard_learn::runs::trainer::Start;
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// Small grey pictures of Remedy Rush in episodes of eleven steps.
 fn worlds(env: &EnvConfig, options: VecOptions) -> Result<VecEnv, EnvError> {
@@ -23,10 +22,7 @@ fn worlds(env: &EnvConfig, options: VecOptions) -> Result<VecEnv, EnvError> {
 }
 
 fn config() -> TrainConfig {
-    let mut config = tiny::config(AlgorithmKind::PpoLag);
-    config.env.id = "RemedyRushLevel1-v0".into();
-    (config.env.frame_skip, config.episode_steps) = (4, 11);
-    (config.sampling.lanes, config.sampling.rollout) = (6, 7);
+    let mut config = tiny::remedy_rush(AlgorithmKind::PpoLag);
     config.learning.critic_inputs = CriticInput::ALL.to_vec();
     (config.learning.auxiliary_depth, config.learning.auxiliary_labels) = (0.2, 0.1);
     config.frames = 6 * config.frames_per_rollout();
@@ -34,11 +30,7 @@ fn config() -> TrainConfig {
 }
 
 fn go(start: Start, path: &Path) -> Vec<u8> {
-    let stop = AtomicBool::new(false);
-    let mut warn = |warning: String| panic!("{warning}");
-    let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut warn };
-    train(start, path, &worlds, &mut hooks).unwrap();
-    tiny::weights(path)
+    tiny::trained_in(&worlds, start, path)
 }
 
 /// A run that stopped in the midst of episodes and went on equals the one that did not, and neither

@@ -7,10 +7,9 @@ use hasard_learn::config::{AlgorithmKind, EnvConfig, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Action, Agent, Choice, Which};
 use hasard_learn::runs::agent_file::export;
-use hasard_learn::runs::trainer::{Hooks, Start, train};
+use hasard_learn::runs::trainer::Start;
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 const SIZE: FrameSize = FrameSize { width: 64, height: 48 };
 
@@ -21,21 +20,14 @@ fn worlds(env: &EnvConfig, options: VecOptions) -> Result<VecEnv, EnvError> {
 }
 
 fn config(algorithm: AlgorithmKind) -> TrainConfig {
-    let mut config = tiny::config(algorithm);
-    config.env.id = "RemedyRushLevel1-v0".into();
-    (config.env.frame_skip, config.episode_steps) = (4, 11);
-    (config.sampling.lanes, config.sampling.rollout) = (6, 7);
+    let mut config = tiny::remedy_rush(algorithm);
     config.network.mirror = true;
     config.frames = 2 * config.frames_per_rollout();
     config
 }
 
 fn go(start: Start, path: &Path) -> Vec<u8> {
-    let stop = AtomicBool::new(false);
-    let mut warn = |warning: String| panic!("{warning}");
-    let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut warn };
-    train(start, path, &worlds, &mut hooks).unwrap();
-    tiny::weights(path)
+    tiny::trained_in(&worlds, start, path)
 }
 
 /// A run that stopped in the midst of episodes and went on equals the one that did not, and neither

@@ -105,15 +105,18 @@ impl Mistakes {
 
     fn note(&mut self, at: usize, warning: bool, text: String) {
         let text: String = text.chars().take(400).flat_map(shown).collect();
-        // Levels repeat what they have in common.
-        let settings = self.said.entry((at, text.clone()));
-        let repeated = matches!(settings, Entry::Occupied(_));
-        let settings = settings.or_default();
-        settings.extend(self.setting.filter(|own| settings.last() != Some(own)));
-        if repeated || self.full() {
+        if self.full() {
             return;
         }
-        self.found.push((at, warning, text));
+        // Levels repeat what they have in common.
+        let settings = match self.said.entry((at, text)) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(fresh) => {
+                self.found.push((at, warning, fresh.key().1.clone()));
+                fresh.insert(Vec::new())
+            }
+        };
+        settings.extend(self.setting.filter(|own| settings.last() != Some(own)));
     }
 
     /// Whether there are as many as are listed.

@@ -48,7 +48,8 @@ pub fn reflections(space: &ActionSpace) -> Result<Vec<Reflected>, LearnError> {
             let at = group.buttons.iter().position(|(name, _)| *name == other);
             let Some(at) = at else {
                 return Err(LearnError::Config(format!(
-                    "network.mirror is on, but {name} has no {other} in its group of buttons: give the task both in one group of its actions, or use false"
+                    "network.mirror is on, but {name} has no {other} in its group of buttons: give the task both in one group of \
+                     its actions, or use false"
                 )));
             };
             all.push(Reflected { column: first + 1 + at, opposite: false });

@@ -10,6 +10,7 @@ use hasard_envs::{
 use hasard_learn::config::Convolution;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::report::Report;
+use hasard_learn::runs::session::MakeWorlds;
 use hasard_learn::runs::trainer::{Hooks, Start, Summary, train};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -259,4 +260,22 @@ pub fn weights(run: &std::path::Path) -> Vec<u8> {
         .max()
         .unwrap();
     std::fs::read(last.join("weights.safetensors")).unwrap()
+}
+
+/// Settings of a few short rollouts of Remedy Rush, in episodes of eleven steps.
+pub fn remedy_rush(algorithm: AlgorithmKind) -> TrainConfig {
+    let mut config = config(algorithm);
+    config.env.id = "RemedyRushLevel1-v0".into();
+    (config.env.frame_skip, config.episode_steps) = (4, 11);
+    (config.sampling.lanes, config.sampling.rollout) = (6, 7);
+    config
+}
+
+/// Trains in other worlds than the task's, without a warning, and gives the last weights.
+pub fn trained_in(make_worlds: &MakeWorlds<'_>, start: Start, path: &Path) -> Vec<u8> {
+    let stop = AtomicBool::new(false);
+    let mut warn = |warning: String| panic!("{warning}");
+    let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut warn };
+    train(start, path, make_worlds, &mut hooks).unwrap();
+    weights(path)
 }

@@ -137,8 +137,8 @@ fn fits<'a>(job: &'a Job, config: &TrainConfig) -> Result<Option<(&'a Job, u64)>
         None if found.frames <= config.frames => Ok(None),
         None if job.state() == State::Finished => Ok(Some((job, found.frames))),
         None => Err(Failure::bad(format!(
-            "{}: is a run of {} frames that has not ended, and the sweep asks for {}; choose another `out`, or end that run first with \
-             hasard train {} --resume --out {}",
+            "{}: is a run of {} frames that has not ended, and the sweep asks for {}; choose another `out`, or end that run first \
+             with hasard train {} --resume --out {}",
             job.directory.display(),
             found.frames,
             config.frames,
