@@ -107,9 +107,11 @@ impl TrainedAgent {
 #[pyfunction]
 pub fn checkpoint_of(py: Python<'_>, run: PathBuf, best: bool) -> PyResult<Option<PathBuf>> {
     let store = Store::new(&run, 1);
-    if let Some(selected) = store.selected().filter(|_| best) {
+    if best {
         let spoiled = |error: LearnError| INVALID_OPTION.error(py, error.to_string());
-        return Loaded::read(&selected).map_err(spoiled).map(|_| Some(selected));
+        if let Some((selected, _)) = store.read_selected().map_err(spoiled)? {
+            return Ok(Some(selected));
+        }
     }
     Ok(store.all().into_iter().find(|path| Loaded::read(path).is_ok()))
 }

@@ -1,6 +1,6 @@
 //! What a sweep runs.
 
-use crate::job::Job;
+use crate::job::{Job, NOT_IDENTITY};
 use crate::one_line;
 use crate::option::OptionValue;
 use std::collections::BTreeMap;
@@ -291,6 +291,9 @@ impl Grid {
             }
             if values.is_empty() {
                 return Err(format!("the option `{name}` has no value"));
+            }
+            if values.len() > 1 && NOT_IDENTITY.contains(&name.as_str()) {
+                return Err(format!("the option `{name}` makes no other run; give one value"));
             }
             if values
                 .iter()

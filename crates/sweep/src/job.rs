@@ -40,7 +40,7 @@ pub enum State {
 
 /// Options that change where or how fast a run is made but not what it is: they stay out of its
 /// directory's name.
-const NOT_IDENTITY: [&str; 4] = ["device", "threads", "json", "quiet"];
+pub(crate) const NOT_IDENTITY: [&str; 4] = ["device", "threads", "json", "quiet"];
 
 /// The folder of an environment below a sweep's own: its id, or its file's path without what leads
 /// out of there.

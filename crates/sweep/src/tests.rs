@@ -222,6 +222,10 @@ fn slips_of_the_pen_are_named() {
         (&format!("{base}[options]\n'--rules' = 'paper'"), "without dashes"),
         (&format!("{base}[options]\nx = {{ y = 1 }}"), "`x` must be a text"),
         (&format!("{base}[options]\nx = []"), "`x` has no value"),
+        (
+            &format!("{base}[options]\nthreads = [1, 2]"),
+            "`threads` makes no other run; give one value",
+        ),
         (&format!("{base}[[grid]]\nout = 'x'"), "grid 1: unknown key `out`"),
         ("frames = 10\nscenarios = ['Lava']\nalgorithms = ['PPO']", "unknown scenario `Lava`"),
         ("frames = 10\nscenarios = ['../../x-v0']\nalgorithms = ['PPO']", "unknown scenario"),

@@ -18,7 +18,7 @@ use crate::networks::distribution::ActionShape;
 use crate::networks::{Actor, ImageShape, ModelShape, Published};
 use crate::random::{Purpose, Stream};
 use crate::runs::agent_file::AgentFile;
-use crate::runs::checkpoint::{Loaded, Store};
+use crate::runs::checkpoint::Store;
 use crate::runs::run_directory::{GONE, damaged_selection, go_on, read_config, spoiled_selection};
 use crate::sampling::privileged::Privileged;
 use crate::sampling::shaping::{Shaping, seen};
@@ -166,13 +166,14 @@ impl TrainedPolicy {
         }
         let config = read_config(directory)?;
         let store = Store::new(directory, 1);
-        let selected = store.selected();
+        let selected = match which {
+            Which::Selected => store.read_selected().map_err(|error| spoiled_selection(&error))?,
+            Which::Latest => None,
+        };
         let has_selected = selected.is_some();
-        let loaded = match (which, selected) {
-            (Which::Selected, Some(selected)) => {
-                Some(Loaded::read(&selected).map_err(|error| spoiled_selection(&error))?)
-            }
-            _ => store.newest(warn)?,
+        let loaded = match selected {
+            Some((_, selected)) => Some(selected),
+            None => store.newest(warn)?,
         };
         let loaded = loaded.ok_or_else(|| {
             if store.has_judged() {

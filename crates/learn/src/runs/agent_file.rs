@@ -124,7 +124,8 @@ fn unround(bytes: &[u8], scales: &[f32], count: usize) -> Option<Vec<f32>> {
 pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
     let config = read_config(run)?;
     let store = Store::new(run, 1);
-    let best = store.selected().ok_or_else(|| {
+    let best = store.read_selected().map_err(|error| spoiled_selection(&error))?;
+    let (_, checkpoint) = best.ok_or_else(|| {
         if store.has_judged() {
             return LearnError::content(run, GONE);
         }
@@ -134,7 +135,6 @@ pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
             format!("no checkpoint was selected yet; let the run be evaluated: {command}"),
         )
     })?;
-    let checkpoint = Loaded::read(&best).map_err(|error| spoiled_selection(&error))?;
     // A run that went on since it was selected may have dropped that checkpoint: what is known of
     // another says nothing of this one.
     let frames = checkpoint.progress.frames;

@@ -131,35 +131,33 @@ impl RunDirectory {
 
     fn lock(path: &Path) -> Result<RunDirectory, LearnError> {
         let file = path.join("lock");
-        let made = !file.exists();
-        let lock = File::options()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(&file)
-            .map_err(LearnError::file(&file, "open"))?;
         // Who only asks whether a training is here, as `hasard serve` does, has it for a moment.
-        let mut held = lock.try_lock();
-        for _ in 0..2 {
-            if matches!(held, Err(TryLockError::WouldBlock)) {
-                std::thread::sleep(Duration::from_millis(20));
-                held = lock.try_lock();
+        for _ in 0..3 {
+            let made = !file.exists();
+            let lock = File::options()
+                .create(true)
+                .truncate(false)
+                .write(true)
+                .open(&file)
+                .map_err(LearnError::file(&file, "open"))?;
+            match lock.try_lock() {
+                // A run that withdrew took the file with it: who comes next makes another.
+                Ok(()) if !is_at(&lock, &file) => {}
+                Ok(()) => {
+                    let folder = fs::metadata(path).ok().as_ref().and_then(identity);
+                    let path = path.to_path_buf();
+                    return Ok(RunDirectory { path, made: (false, made), folder, _lock: lock });
+                }
+                Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(20)),
+                Err(TryLockError::Error(source)) => {
+                    return Err(LearnError::File { path: file, doing: "lock", source });
+                }
             }
         }
-        match held {
-            Ok(()) => {
-                let folder = fs::metadata(path).ok().as_ref().and_then(identity);
-                let path = path.to_path_buf();
-                Ok(RunDirectory { path, made: (false, made), folder, _lock: lock })
-            }
-            Err(TryLockError::WouldBlock) => Err(LearnError::content(
-                path,
-                "another trainer works in this directory; wait for it, stop it, or choose another one with --out",
-            )),
-            Err(TryLockError::Error(source)) => {
-                Err(LearnError::File { path: file, doing: "lock", source })
-            }
-        }
+        Err(LearnError::content(
+            path,
+            "another trainer works in this directory; wait for it, stop it, or choose another one with --out",
+        ))
     }
 
     /// Refuses to go on where the folder was moved or removed meanwhile: half of the run would be
@@ -364,6 +362,12 @@ fn identity(folder: &fs::Metadata) -> Option<(u64, u64)> {
 #[cfg(not(unix))]
 fn identity(_: &fs::Metadata) -> Option<(u64, u64)> {
     None
+}
+
+/// Whether an open file is still the one at its path.
+fn is_at(file: &File, path: &Path) -> bool {
+    let at = fs::metadata(path).ok();
+    at.is_some_and(|at| file.metadata().is_ok_and(|own| identity(&own) == identity(&at)))
 }
 
 fn remove_if_there(path: &Path) -> Result<(), LearnError> {

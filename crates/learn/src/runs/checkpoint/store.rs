@@ -50,6 +50,19 @@ impl Store {
         Some(known.filter(|path| path.is_dir()).unwrap_or(newest))
     }
 
+    /// The selected checkpoint, read. A run that goes on may drop it meanwhile: then it is the one
+    /// that it selects by then.
+    pub fn read_selected(&self) -> Result<Option<(PathBuf, Loaded)>, LearnError> {
+        let Some(mut path) = self.selected() else { return Ok(None) };
+        loop {
+            let error = match Loaded::read(&path) {
+                Ok(loaded) => return Ok(Some((path, loaded))),
+                Err(error) => error,
+            };
+            path = self.selected().filter(|other| *other != path).ok_or(error)?;
+        }
+    }
+
     /// Whether the run has judged a checkpoint, so that one must have been written.
     #[must_use]
     pub fn has_judged(&self) -> bool {
@@ -195,11 +208,21 @@ impl Store {
         {
             return Err(LearnError::file(&self.directory, "read")(error));
         }
-        let all = [self.all(), self.numbered("best_")].concat();
-        for path in &all {
-            match Loaded::read(path) {
+        let list = || [self.all(), self.numbered("best_")].concat();
+        let mut all = list();
+        let mut next = 0;
+        while let Some(path) = all.get(next) {
+            let error = match Loaded::read(path) {
                 Ok(loaded) => return Ok(Some(loaded)),
-                Err(error) => warn(format!("{error}; going back to the checkpoint before it")),
+                Err(error) => error,
+            };
+            // A run that goes on has dropped it for newer ones.
+            let now = list();
+            if now.first() == all.first() {
+                warn(format!("{error}; going back to the checkpoint before it"));
+                next += 1;
+            } else {
+                (all, next) = (now, 0);
             }
         }
         if all.is_empty() {
@@ -225,6 +248,36 @@ mod tests {
         });
         let progress = serde_json::from_value(progress).unwrap();
         Checkpoint { weights: vec![1], training: vec![2], progress }
+    }
+
+    /// Another process, such as `export-agent`, reads while the run goes on: what it was about to read
+    /// is dropped for newer ones.
+    #[test]
+    fn who_reads_while_a_run_writes_always_gets_a_checkpoint() {
+        let run = std::env::temp_dir().join(format!("hasard-read-{}", std::process::id()));
+        let store = Store::new(&run, 1);
+        fs::create_dir_all(run.join("checkpoints")).unwrap();
+        store.write(&checkpoint(1)).unwrap();
+        store.write_best(&checkpoint(1)).unwrap();
+        std::thread::scope(|threads| {
+            let writer = threads.spawn(|| {
+                for frames in 2..400 {
+                    store.write(&checkpoint(frames)).unwrap();
+                    store.write_best(&checkpoint(frames)).unwrap();
+                    store.keep_only(&[store.best_of(frames)]).unwrap();
+                }
+            });
+            let (mut frames, mut selected) = (0, 0);
+            while !writer.is_finished() {
+                let newest = store.newest(&mut |line| panic!("{line}")).unwrap().unwrap();
+                assert!(newest.progress.frames >= frames);
+                frames = newest.progress.frames;
+                let (_, best) = store.read_selected().unwrap().unwrap();
+                assert!(best.progress.frames >= selected);
+                selected = best.progress.frames;
+            }
+        });
+        fs::remove_dir_all(&run).unwrap();
     }
 
     /// A run went back behind damaged checkpoints: those that it writes on its way do not go for them.
