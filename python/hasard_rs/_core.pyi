@@ -122,6 +122,8 @@ class Worlds:
 @final
 class AgentState:
     def __len__(self) -> int: ...
+    @staticmethod
+    def of_bytes(data: bytes) -> AgentState: ...
 
 @final
 class TrainedAgent:

@@ -10,6 +10,7 @@ import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
@@ -166,8 +167,8 @@ class Agent:
             observations, rewards, terminations, truncations, infos = env.step(actions)
             state = agent.after(state, infos["cost"], terminations | truncations)
 
-    Made by `Agent.load`, with its best and greedy. Attributes: run, the directory, file or "zoo:NAME" that it came from; env_id; config, the run's
-    settings.
+    Made by `Agent.load`, with its best and greedy; a pickled or copied one is loaded again, from the same place. What it remembers is pickled
+    with all that it holds. Attributes: run, the directory, file or "zoo:NAME" that it came from; env_id; config, the run's settings.
     """
 
     def __init__(self, trained: Any, run: Path, best: bool = False, greedy: bool = False) -> None:
@@ -193,6 +194,11 @@ class Agent:
             InvalidOption where there is no run, no checkpoint or a spoiled one, or no such agent in the zoo.
         """
         return cls(_core.TrainedAgent(run, best=best, greedy=greedy), Path(run), best, greedy)
+
+    def __reduce__(self) -> tuple[Callable[[], Agent], tuple[()]]:
+        """For pickle and copies: the agent is loaded again, from the same place."""
+        place = str(self.run)
+        return partial(Agent.load, place if place.startswith("zoo:") else os.path.abspath(place), **self._how), ()
 
     def arguments(self) -> dict[str, Any]:
         """Returns keyword arguments of environments like the one that the agent was trained in, its maps and pictures among them."""

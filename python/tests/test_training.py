@@ -71,6 +71,25 @@ def test_what_is_loaded_is_what_plays(tmp_path: Path) -> None:
             best.evaluate(**wrong)
 
 
+def test_agents_and_what_they_remember_are_pickled(tmp_path: Path) -> None:
+    zoo = Path(__file__).parents[2] / "zoo"
+    shutil.copy(zoo / "RemedyRushLevel1.agent", tmp_path / "one.agent")
+    agent = hasard_rs.Agent.load(os.path.relpath(tmp_path / "one.agent"), greedy=True)
+    env = agent.make_vec(2)
+    observations, _ = env.reset(seed=1)
+    actions, state = agent.act(observations, agent.begin(2, seed=9))
+    observations, _, terminations, truncations, infos = env.step(actions)
+    state = agent.after(state, infos["cost"], terminations | truncations)
+    # In a process that was begun elsewhere.
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        actions, after = pool.apply(agent.act, (observations, state))
+    own, own_after = agent.act(observations, state)
+    assert np.array_equal(actions, own) and pickle.dumps(after) == pickle.dumps(own_after) != pickle.dumps(state)
+    assert copy.deepcopy(agent).evaluate(1) == agent.evaluate(1)
+    with pytest.raises(ValueError, match="no agent's state"):
+        hasard_rs._core.AgentState.of_bytes(b"x")
+
+
 def test_agents_of_the_zoo_and_of_files_are_agents(monkeypatch: pytest.MonkeyPatch) -> None:
     zoo = Path(__file__).parents[2] / "zoo"
     monkeypatch.setenv("HASARD_ZOO", str(zoo))

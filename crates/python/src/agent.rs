@@ -14,6 +14,7 @@ use hasard_learn::runs::evaluate::{Agent as Trained, Choice, Memory, Which};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard};
 
@@ -28,6 +29,24 @@ impl AgentState {
     /// Number of lanes.
     fn __len__(&self) -> usize {
         self.memory.episodes.len()
+    }
+
+    /// of_bytes(data) -> AgentState
+    ///
+    /// Returns the state that pickle wrote as `data`. Raises ValueError for other bytes.
+    #[staticmethod]
+    fn of_bytes(data: &[u8]) -> PyResult<AgentState> {
+        let memory = Memory::of_bytes(data);
+        let memory = memory.ok_or_else(|| PyValueError::new_err("data is no agent's state"))?;
+        Ok(AgentState { memory })
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let read = py.get_type::<AgentState>().getattr("of_bytes")?;
+        Ok((read, (PyBytes::new(py, &self.memory.bytes()),)))
     }
 }
 

@@ -37,6 +37,19 @@ names! {
 }
 
 names! {
+    /// What steps the weights of hidden layers; Adam steps the others.
+    #[derive(Default)]
+    Optimiser ("optimiser") {
+        /// Adam (Kingma and Ba 2015).
+        #[default]
+        Adam = "adam",
+        /// Muon (Jordan et al. 2024): each matrix goes by the orthogonal matrix that is nearest to
+        /// its momentum, so that all directions are learned equally fast.
+        Muon = "muon",
+    }
+}
+
+names! {
     /// What brings returns to one scale for the critics.
     #[derive(Default)]
     ReturnNormaliser ("normaliser of returns") {
@@ -75,6 +88,10 @@ fn six() -> usize {
 
 fn one() -> f64 {
     1.0
+}
+
+fn half() -> f64 {
+    0.5
 }
 
 /// How the networks learn.
@@ -129,7 +146,16 @@ pub struct LearningConfig {
     /// the first episodes cost.
     #[serde(default)]
     pub budget_annealing_start: Option<f64>,
-    /// Adam's decays.
+    /// What steps the weights of convolutions, dense and recurrent layers: `adam`, or `muon` (Jordan
+    /// et al. 2024), whose step of a matrix is as long in all directions; it takes about as much time
+    /// again as the learning without. Heads and biases are Adam's.
+    #[serde(default)]
+    pub optimiser: Optimiser,
+    /// Muon: root mean square of the entries of a matrix's step, in learning rates (Liu et al. 2025,
+    /// arXiv 2502.16982, 0.2, which is about Adam's).
+    #[serde(default = "half")]
+    pub muon_scale: f64,
+    /// Adam's decays, the first of which is that of Muon's momentum.
     pub adam_betas: (f64, f64),
     /// Adam's epsilon.
     pub adam_epsilon: f64,

@@ -38,7 +38,9 @@ pub use constraint::{Constraint, ConstraintStatistic};
 pub use environment::EnvConfig;
 pub use evaluation::EvaluationConfig;
 pub use init_from::InitFrom;
-pub use learning::{CriticInput, Exploration, LearningConfig, Products, ReturnNormaliser};
+pub use learning::{
+    CriticInput, Exploration, LearningConfig, Optimiser, Products, ReturnNormaliser,
+};
 pub use network::{Convolution, Initialisation, NetworkConfig, RecurrentCell};
 pub use reflection::{Reflected, reflections};
 pub use reporting::ReportingConfig;

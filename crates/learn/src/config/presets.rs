@@ -4,7 +4,7 @@
 
 use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig,
-    Exploration, LearningConfig, MultiplierUpdate, NetworkConfig, Preset, Products,
+    Exploration, LearningConfig, MultiplierUpdate, NetworkConfig, Optimiser, Preset, Products,
     ReportingConfig, ReturnNormaliser, SamplingConfig, TrainConfig,
 };
 use crate::config::{Convolution, Initialisation, RecurrentCell, quick, second_order};
@@ -93,6 +93,8 @@ impl TrainConfig {
                 schedule_frames: None,
                 budget_annealing: None,
                 budget_annealing_start: None,
+                optimiser: Optimiser::Adam,
+                muon_scale: 0.5,
                 adam_betas: (0.9, 0.999),
                 adam_epsilon: if released && separate { 1e-8 } else { 1e-6 },
                 // FOCOPS stops there, and CUP's code is built on its.

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use crate::config::TrainConfig;
+use crate::config::{Optimiser, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::gather::gather;
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 pub use crate::learning::minibatch::{Critic, Minibatch};
+use crate::learning::muon::Block;
 use crate::learning::normaliser::{Moments, PixelNormaliser, PixelSums};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::Policy;
@@ -99,7 +100,13 @@ impl Learner {
             ),
             optimisers: std::iter::repeat_n(&shape.networks, config.algorithm.optimisers())
                 .flatten()
-                .map(|network| Adam::new(network.parameter_count()))
+                .map(|network| {
+                    let blocks = match config.learning.optimiser {
+                        Optimiser::Adam => vec![],
+                        Optimiser::Muon => Block::all(network),
+                    };
+                    Adam::new(network.parameter_count(), blocks)
+                })
                 .collect(),
             pixels: PixelNormaliser::new(shape.pixels()),
             returns: vec![Moments::default(); 1 + shape.cost_critics],

@@ -10,6 +10,7 @@ pub mod learner;
 pub mod loss;
 pub mod metrics;
 pub mod minibatch;
+mod muon;
 pub mod normaliser;
 pub mod optimiser;
 pub mod policy;

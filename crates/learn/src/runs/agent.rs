@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use hasard_envs::CostTerm;
+use serde::{Deserialize, Serialize};
 
 use crate::algorithms::shaping;
 use crate::config::constraint::find_terms;
@@ -89,7 +90,7 @@ pub struct Action {
 }
 
 /// What an agent carries from step to step, lane by lane.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Memory {
     /// State of each network, `[lanes, units]`.
     pub state: Vec<Vec<f32>>,
@@ -97,6 +98,20 @@ pub struct Memory {
     pub safety: Vec<f64>,
     /// Seed of each lane's episode, and its steps so far: what its draws come from.
     pub episodes: Vec<(u64, u64)>,
+}
+
+impl Memory {
+    /// All of it as bytes, for another process.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        postcard::to_allocvec(self).unwrap_or_default()
+    }
+
+    /// What [`Memory::bytes`] wrote; `None` of other bytes.
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8]) -> Option<Memory> {
+        postcard::from_bytes(bytes).ok()
+    }
 }
 
 /// What an agent made of the moment it acted in last.

@@ -279,3 +279,23 @@ pub fn trained_in(make_worlds: &MakeWorlds<'_>, start: Start, path: &Path) -> Ve
     train(start, path, make_worlds, &mut hooks).unwrap();
     weights(path)
 }
+
+/// The weights of a run, which neither a stop in the midst of episodes nor samplers, groups and
+/// threads change by a bit.
+pub fn however_trained(make_worlds: &MakeWorlds<'_>, config: &TrainConfig, name: &str) -> Vec<u8> {
+    let go = |start: Start, path: &Path| trained_in(make_worlds, start, path);
+    let path = |part: &str| directory(&format!("{name}-{part}"));
+    let (straight, broken, dealt) = (path("straight"), path("broken"), path("dealt"));
+    let all = go(Start::Fresh(config.clone()), &straight);
+    go(Start::Fresh(TrainConfig { frames: config.frames / 2, ..config.clone() }), &broken);
+    let settings = vec![format!("frames={}", config.frames), "sampling.samplers=3".into()];
+    assert!(go(Start::Resume { settings }, &broken) == all, "{name}: the resumed run differs");
+    let mut other = config.clone();
+    (other.sampling.samplers, other.sampling.groups, other.sampling.world_threads) = (1, 2, 2);
+    other.learning.threads = 3;
+    assert!(go(Start::Fresh(other), &dealt) == all, "{name}: threads change a bit");
+    for path in [straight, broken, dealt] {
+        std::fs::remove_dir_all(path).unwrap();
+    }
+    all
+}

@@ -17,6 +17,7 @@ fn answer(setting: &str) -> Result<(), String> {
 fn numbers_out_of_range_are_refused_by_name() {
     for setting in [
         "learning.value_coefficient=-1",
+        "learning.muon_scale=-0.5",
         "learning.adam_epsilon=0",
         "learning.adam_epsilon=1e-300",
         "learning.adam_betas=[1,0.9]",

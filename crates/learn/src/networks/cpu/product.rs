@@ -454,4 +454,4 @@ pub(super) fn add_to_overlapping_rows<T: Factor>(
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;
