@@ -1,4 +1,6 @@
 use super::*;
+use crate::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
+use crate::learning::optimiser::Adam;
 use crate::networks::cpu::product::tests::noise;
 
 fn block(rows: usize, columns: usize, matrices: usize) -> Block {
@@ -148,4 +150,28 @@ fn heads_and_biases_are_left_to_adam() {
     let first = of("convolution0.weight").unwrap();
     assert_eq!((first.rows, first.columns, first.matrices), (8 * 8 * 3, 32, 1));
     assert!(of("head0.weight").is_none() && of("gru.hidden_bias").is_none());
+}
+
+/// Two steps of a network's parameters: those of heads and biases go as Adam steps them, the others
+/// do not, and threads change no bit.
+#[test]
+fn what_is_in_no_block_is_stepped_as_adam_steps_it() {
+    let shape = NetworkShape { recurrent: Some(32), dense: vec![32], ..NetworkShape::default() };
+    let (count, blocks) = (shape.parameter_count(), Block::all(&shape));
+    let env = EnvConfig::new("RemedyRushLevel1-v0");
+    let mut settings = TrainConfig::plain(AlgorithmKind::Ppo, Preset::Quick, env).learning;
+    let mut moved = |blocks: &[Block], threads: usize| {
+        settings.threads = threads;
+        let (mut adam, mut parameters) = (Adam::new(count, blocks.to_vec()), noise(count, 1));
+        for seed in 2..4 {
+            adam.step(Simd::widest(), &noise(count, seed), &mut parameters, 0.5, 0.001, &settings);
+        }
+        parameters
+    };
+    let (adam, muon) = (moved(&[], 1), moved(&blocks, 1));
+    assert!(moved(&blocks, 3) == muon, "threads change a bit");
+    for (at, (one, other)) in adam.iter().zip(&muon).enumerate() {
+        let is_in_a_block = blocks.iter().any(|block| block.range.contains(&at));
+        assert_eq!(one != other, is_in_a_block, "parameter {at}");
+    }
 }
