@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import json
+import multiprocessing
+import os
+import pickle
 import shutil
 import subprocess
 import sys
