@@ -37,21 +37,7 @@ fn go(start: Start, path: &Path) -> Vec<u8> {
 /// samplers, groups nor threads change a bit.
 #[test]
 fn runs_with_insight_resume_exactly_and_for_any_number_of_threads() {
-    let config = config();
-    let straight = tiny::directory("insight-straight");
-    let all = go(Start::Fresh(config.clone()), &straight);
-    let broken = tiny::directory("insight-broken");
-    go(Start::Fresh(TrainConfig { frames: config.frames / 2, ..config.clone() }), &broken);
-    let settings = vec![format!("frames={}", config.frames), "sampling.samplers=3".into()];
-    assert!(go(Start::Resume { settings }, &broken) == all, "the resumed run differs");
-    let dealt = tiny::directory("insight-dealt");
-    let mut other = config;
-    (other.sampling.samplers, other.sampling.groups, other.sampling.world_threads) = (1, 2, 2);
-    other.learning.threads = 3;
-    assert!(go(Start::Fresh(other), &dealt) == all, "threads change a bit");
-    for path in [straight, broken, dealt] {
-        fs::remove_dir_all(path).unwrap();
-    }
+    tiny::however_trained(&worlds, &config(), "insight");
 }
 
 /// What the critics see differs from lane to lane and step to step, is of about the size of other

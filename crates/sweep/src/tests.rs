@@ -38,10 +38,14 @@ fn scaled_sweeps_scale_all_their_lengths() {
                 [settings]\nlearning.schedule_frames = 4_000_000\nevaluation.every = 100_000\nevaluation.episodes = 8\n";
     let mut sweep = Sweep::parse(text).unwrap();
     sweep.scale_frames(0.01);
-    let line = sweep.jobs().unwrap()[0].command_line("hasard");
-    for part in
-        ["--frames 20000 ", "--eval-every 5000", "schedule_frames=40000", "evaluation.every=1000 "]
-    {
+    // With a space behind each number, as there may be more digits.
+    let line = sweep.jobs().unwrap()[0].command_line("hasard") + " ";
+    for part in [
+        "--frames 20000 ",
+        "--eval-every 5000 ",
+        "schedule_frames=40000 ",
+        "evaluation.every=1000 ",
+    ] {
         assert!(line.contains(part), "{part}: {line}");
     }
     assert!(line.contains("evaluation.episodes=8"), "{line}");

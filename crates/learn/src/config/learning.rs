@@ -147,8 +147,8 @@ pub struct LearningConfig {
     #[serde(default)]
     pub budget_annealing_start: Option<f64>,
     /// What steps the weights of convolutions, dense and recurrent layers: `adam`, or `muon` (Jordan
-    /// et al. 2024), whose step of a matrix is as long in all directions; it takes about as much time
-    /// again as the learning without. Heads and biases are Adam's.
+    /// et al. 2024), whose step of a matrix is as long in all directions, for more arithmetic. Heads
+    /// and biases are Adam's.
     #[serde(default)]
     pub optimiser: Optimiser,
     /// Muon: root mean square of the entries of a matrix's step, in learning rates (Liu et al. 2025,

@@ -90,8 +90,8 @@ impl TrainConfig {
             ("IPO's largest penalty", settings.ipo_limit, 0.0, f64::MAX),
             ("the penalty scale", settings.penalty_scale, 0.0, f64::MAX),
             ("learning.value_coefficient", learning.value_coefficient, 0.0, 1e6),
-            // Anything smaller is 0 in single precision, and a step is divided by it.
             ("learning.muon_scale", learning.muon_scale, 0.0, 1e3),
+            // Anything smaller is 0 in single precision, and a step is divided by it.
             ("learning.adam_epsilon", learning.adam_epsilon, 1e-30, 1.0),
             ("algorithm_settings.multiplier_initial", settings.multiplier_initial, 0.0, HUGE),
             ("the first of algorithm_settings.pid_gains", proportional, 0.0, HUGE),

@@ -104,7 +104,7 @@ impl Memory {
     /// All of it as bytes, for another process.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
-        postcard::to_allocvec(self).unwrap_or_default()
+        postcard::to_allocvec(self).expect("numbers are written into memory")
     }
 
     /// What [`Memory::bytes`] wrote; `None` of other bytes.

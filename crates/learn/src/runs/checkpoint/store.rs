@@ -30,8 +30,7 @@ impl Store {
 
     /// The checkpoint that the run selects, or would as far as it has come; `None` if it was never
     /// evaluated.
-    #[must_use]
-    pub fn selected(&self) -> Option<PathBuf> {
+    fn selected(&self) -> Option<PathBuf> {
         let kept = self.numbered("best_");
         let closed = self
             .directory
