@@ -2,7 +2,9 @@
 //! in a folder.
 
 use crate::failure::Failure;
-use hasard_learn::runs::zoo::{PREFIX, names};
+use hasard_learn::config::InitFrom;
+use hasard_learn::runs::checksum::sha256;
+use hasard_learn::runs::zoo::{PREFIX, bytes, names};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -36,6 +38,15 @@ pub fn find(text: &OsStr) -> Result<PathBuf, Failure> {
             names.join(", ")
         ))
     })
+}
+
+/// What names weights in a command that others can run: `zoo:NAME` where they are of the program,
+/// though they were read from a folder of this machine; else their place.
+pub fn name(weights: &InitFrom) -> PathBuf {
+    names()
+        .map(|name| PathBuf::from(format!("{PREFIX}{name}")))
+        .find(|place| bytes(place).is_some_and(|bytes| sha256(bytes) == weights.sha256))
+        .unwrap_or_else(|| weights.place.clone())
 }
 
 /// Whether a text names an agent's file rather than a run directory or an environment.

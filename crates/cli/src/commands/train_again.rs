@@ -1,5 +1,6 @@
 //! The command that trains a run again, from its settings.
 
+use crate::zoo;
 use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
 use hasard_media::shell::quote;
 use serde_json::{Value, json};
@@ -26,7 +27,7 @@ pub fn command(config: &TrainConfig) -> String {
         config.algorithm, config.preset, config.frames, config.seed
     )];
     if let Some(init_from) = &config.init_from {
-        words.push(format!("--init-from {}", quote(&init_from.place)));
+        words.push(format!("--init-from {}", quote(&zoo::name(init_from))));
     }
     // Said always where the preset's own rules might be others.
     if env.rules != usual.rules || config.preset == Preset::Tables {
@@ -106,6 +107,20 @@ fn set(name: &str, value: &Value) -> String {
 mod tests {
     use super::*;
     use crate::commands::train_settings::tests::config;
+    use hasard_learn::config::InitFrom;
+
+    /// Another machine has the program's agents by their names, not the folder they were read from.
+    #[test]
+    fn weights_of_the_program_are_named_wherever_they_were_read() {
+        let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../zoo/RemedyRushLevel1.agent");
+        let mut wanted = config("--seed 3").unwrap().begun();
+        let read = InitFrom::at(&place, &mut |_| ()).unwrap();
+        wanted.init_from = Some(read.clone());
+        assert!(command(&wanted).contains("--init-from zoo:RemedyRushLevel1 "));
+        let sha256 = "0".repeat(64);
+        wanted.init_from = Some(InitFrom { sha256, ..read });
+        assert!(command(&wanted).contains(&format!("--init-from {}", quote(&place))));
+    }
 
     /// What it writes, typed again, gives the same settings.
     #[test]
