@@ -27,7 +27,7 @@ pub fn command(config: &TrainConfig) -> String {
         config.algorithm, config.preset, config.frames, config.seed
     )];
     if let Some(init_from) = &config.init_from {
-        words.push(format!("--init-from {}", quote(&zoo::name(init_from))));
+        words.push(format!("--init-from {}", quote(zoo::name(init_from))));
     }
     // Said always where the preset's own rules might be others.
     if env.rules != usual.rules || config.preset == Preset::Tables {
