@@ -432,6 +432,28 @@ fn a_run_without_any_report_is_shown_as_such() {
     );
 }
 
+/// A folder that was named is not passed over in silence, and one that lies in another is no other.
+#[test]
+fn a_named_folder_without_runs_is_warned_of() {
+    let folder = Folder::new("empty");
+    let (run, empty) = (folder.0.join("runs/a"), folder.0.join("empty"));
+    Synthetic {
+        env: "RemedyRushLevel1-v0",
+        algo: "PPO",
+        seed: 1,
+        frames: 1e6,
+        reports: 3,
+        options: "",
+        end: (1.0, 1.0, 0.0),
+    }
+    .write(&run);
+    std::fs::create_dir(&empty).unwrap();
+    let paths = [folder.0.join("runs"), run, empty.clone()];
+    let written = write_report(&paths, &folder.0.join("out"), "t").unwrap();
+    let lines: Vec<String> = written.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(lines, [format!("{}: no run and no episode is here", empty.display())]);
+}
+
 #[test]
 fn paths_without_runs_are_errors_that_say_what_to_do() {
     let folder = Folder::new("none");

@@ -44,6 +44,14 @@ pub struct Found {
     pub warnings: Vec<Warning>,
 }
 
+impl Found {
+    /// How much of anything was found.
+    fn count(&self) -> usize {
+        let episodes = self.players.values().map(Vec::len).sum::<usize>();
+        self.runs.len() + episodes + self.warnings.len()
+    }
+}
+
 /// Looks through folders for run directories (those with a `config.json`) and episode files of
 /// humans, and reads files of episodes (`hasard rollout --json > random.jsonl`), whose name becomes
 /// the player's.
@@ -52,10 +60,16 @@ pub struct Found {
 /// When a named path does not exist, or nothing at all is found.
 pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
     let mut found = Found::default();
-    let mut seen = Seen::new();
+    let (mut seen, mut empty) = (Seen::new(), Vec::new());
     for path in paths {
         if path.is_dir() {
+            let known = (found.count(), seen.len());
             look(path, 0, &mut found, &mut seen);
+            // A folder that another one holds was looked at with it.
+            if found.count() == known.0 && seen.len() > known.1 {
+                let problem = "no run and no episode is here".to_owned();
+                empty.push(Warning { path: path.clone(), line: 0, problem });
+            }
         } else if path.is_file() {
             if !is_new(path, &mut seen) {
                 continue;
@@ -89,6 +103,7 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
             names.join(" ")
         ));
     }
+    found.warnings.append(&mut empty);
     Ok(found)
 }
 

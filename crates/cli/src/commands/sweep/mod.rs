@@ -1,5 +1,6 @@
 //! `hasard sweep`: many trainings.
 
+mod options;
 pub(super) mod plan;
 mod progress;
 mod rescale;
@@ -11,7 +12,7 @@ use crate::interrupt::{self, Manner};
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
 use hasard_learn::runs::run_directory::read_config;
 use hasard_media::shell::quote;
-use hasard_sweep::{Event, Job, OptionValue, State, Stop, Summary, Sweep, paper, run_jobs};
+use hasard_sweep::{Event, Job, State, Stop, Summary, Sweep, paper, run_jobs};
 use plan::Plan;
 use progress::Progress;
 use serde_json::json;
@@ -235,15 +236,7 @@ fn change(sweep: &mut Sweep, args: &SweepArgs) -> Result<(), Failure> {
         let seeds = seeds(&args.seeds)?;
         sweep.grids.iter_mut().for_each(|grid| grid.seeds.clone_from(&seeds));
     }
-    if let Some(preset) = &args.preset {
-        sweep.set_option("preset", &OptionValue::Text(preset.clone()));
-    }
-    for option in &args.option {
-        match option.split_once('=') {
-            Some((name, value)) => sweep.set_option(name, &OptionValue::Text(value.to_owned())),
-            None => sweep.set_option(option, &OptionValue::Switch(true)),
-        }
-    }
+    options::give(sweep, args)?;
     if let Some(frames) = args.frames {
         sweep.grids.iter_mut().for_each(|grid| grid.frames = frames);
     }

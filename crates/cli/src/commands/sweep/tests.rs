@@ -21,6 +21,35 @@ fn jobs(words: &str) -> Vec<Job> {
     sweep.jobs().unwrap()
 }
 
+/// Of an option that is given twice a run could have only the last, and a setting of the sweep's own
+/// would be in no run whose folder says otherwise.
+#[test]
+fn options_are_given_once() {
+    let path = std::env::temp_dir().join(format!("hasard-options-{}.toml", std::process::id()));
+    let text =
+        "scenarios = ['RemedyRush']\nalgorithms = ['PPO']\n[settings]\nlearning.gamma = 0.9\n";
+    std::fs::write(&path, text).unwrap();
+    let refused = |words: &str| {
+        let args = args(&format!("{} {words}", path.display()));
+        let mut sweep = description(&args.what).unwrap().sweep;
+        change(&mut sweep, &args).map_err(Failure::line).err()
+    };
+    for (words, named) in [
+        ("--option set=learning.rate=0.001 --option set=learning.gae_lambda=0.9", "[settings]"),
+        ("--option rules=tables --option rules=paper", "rules is given twice"),
+        ("--preset paper --option preset=quick", "preset is given twice"),
+        ("--option set=learning.gamma=0.5", "the sweep has learning.gamma under [settings]"),
+    ] {
+        let line = refused(words).unwrap_or_else(|| panic!("{words} is taken"));
+        assert!(line.contains(named), "{line}");
+    }
+    assert_eq!(
+        refused("--option set=learning.rate=0.001 --option rules=paper --preset paper"),
+        None
+    );
+    std::fs::remove_file(path).unwrap();
+}
+
 /// The runs of `words` after what `--scale` adds.
 fn scaled(words: &str) -> Result<Vec<Job>, Failure> {
     let (mut jobs, scale) = (jobs(words), args(words).scale.unwrap());
