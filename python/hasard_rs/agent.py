@@ -167,8 +167,8 @@ class Agent:
             observations, rewards, terminations, truncations, infos = env.step(actions)
             state = agent.after(state, infos["cost"], terminations | truncations)
 
-    Made by `Agent.load`, with its best and greedy. Agents and states can be pickled and copied; an agent is then loaded again, from the
-    same place. Attributes: run, the directory, file or "zoo:NAME" that it came from; env_id; config, the run's settings.
+    Made by `Agent.load`, with its best and greedy. Agents and states can be pickled and copied; an agent is then loaded again,
+    from the same place. Attributes: run, the directory, file or "zoo:NAME" that it came from; env_id; config, the run's settings.
     """
 
     def __init__(self, trained: Any, run: Path, best: bool = False, greedy: bool = False) -> None:

@@ -432,11 +432,8 @@ fn a_run_without_any_report_is_shown_as_such() {
     );
 }
 
-/// A folder that was named is not passed over in silence, and one that lies in another is no other.
-#[test]
-fn a_named_folder_without_runs_is_warned_of() {
-    let folder = Folder::new("empty");
-    let (run, empty) = (folder.0.join("runs/a"), folder.0.join("empty"));
+/// A run of three reports, where any run will do.
+fn write_short_run(folder: &Path) {
     Synthetic {
         env: "RemedyRushLevel1-v0",
         algo: "PPO",
@@ -446,7 +443,15 @@ fn a_named_folder_without_runs_is_warned_of() {
         options: "",
         end: (1.0, 1.0, 0.0),
     }
-    .write(&run);
+    .write(folder);
+}
+
+/// A folder that was named is not passed over in silence, and one that lies in another is no other.
+#[test]
+fn a_named_folder_without_runs_is_warned_of() {
+    let folder = Folder::new("empty");
+    let (run, empty) = (folder.0.join("runs/a"), folder.0.join("empty"));
+    write_short_run(&run);
     std::fs::create_dir(&empty).unwrap();
     let paths = [folder.0.join("runs"), run, empty.clone()];
     let written = write_report(&paths, &folder.0.join("out"), "t").unwrap();
@@ -463,16 +468,7 @@ fn paths_without_runs_are_errors_that_say_what_to_do() {
     let error = write_report(&[PathBuf::from("/no/such")], &folder.0.join("out"), "t").unwrap_err();
     assert!(error.starts_with("/no/such: no such file or folder"), "{error}");
     let run = folder.0.join("run");
-    Synthetic {
-        env: "RemedyRushLevel1-v0",
-        algo: "PPO",
-        seed: 1,
-        frames: 1e6,
-        reports: 3,
-        options: "",
-        end: (1.0, 1.0, 0.0),
-    }
-    .write(&run);
+    write_short_run(&run);
     let error = write_report(&[run], Path::new("/dev/null/out"), "t").unwrap_err();
     assert!(error.starts_with("/dev/null/out"), "{error}");
 }
