@@ -54,7 +54,7 @@ pub fn positive(text: &str) -> Result<u64, String> {
 /// on; or several of them with commas between, a mixed batch. Other texts stay as they are; what makes the environment names the nearest id.
 ///
 /// # Errors
-/// What is wrong with a scenario's file.
+/// What is wrong with a scenario's file, or that a file has another ending.
 pub fn env_id(text: &str) -> Result<String, String> {
     if text.contains(',') && !std::path::Path::new(text).exists() {
         let words: Vec<&str> = text.split(',').map(str::trim).collect();
@@ -91,7 +91,34 @@ pub fn env_id(text: &str) -> Result<String, String> {
     let known = EnvId::every()
         .map(|id| id.to_string())
         .find(|id| id.trim_end_matches("-v0").eq_ignore_ascii_case(plain));
+    if known.is_none() && std::path::Path::new(text).is_file() {
+        return Err("a task's file ends in .toml; rename it".to_string());
+    }
     Ok(known.unwrap_or_else(|| text.to_string()))
+}
+
+/// As [`env_id`], for `train`: files that are not there stay as they were typed, since a run that
+/// goes on has kept the text of its task.
+///
+/// # Errors
+/// As there.
+pub fn env_id_of_run(text: &str) -> Result<String, String> {
+    let absent = text.split(',').any(is_absent_file);
+    env_id(text).or_else(|why| if absent { Ok(text.to_string()) } else { Err(why) })
+}
+
+/// Whether a word names a scenario's file where none is.
+pub fn is_absent_file(word: &str) -> bool {
+    let (path, _) = file_and_level(word.trim());
+    is_file(path) && std::path::Path::new(path).try_exists().is_ok_and(|there| !there)
+}
+
+/// The path of `my_task.toml#2`, and its level.
+pub fn file_and_level(word: &str) -> (&str, Option<&str>) {
+    match word.rsplit_once('#') {
+        Some((path, level)) if is_file(path) => (path, Some(level)),
+        _ => (word, None),
+    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 use crate::failure::Failure;
 use crate::zoo;
 use hasard_envs::edit_distance;
+use hasard_media::files::what_lies_at;
 use hasard_media::shell::quote;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -19,10 +20,12 @@ const DEPTH: usize = 3;
 ///
 /// # Errors
 /// One line: for a folder of runs it names the latest of them, for nothing at all what is called
-/// nearly so.
+/// nearly so, and what the system says of a place that is closed to us.
 pub fn run(text: &OsStr) -> Result<PathBuf, Failure> {
     let place = zoo::find(text)?;
-    if place.is_dir() && !place.join(SETTINGS).is_file() {
+    let kind = what_lies_at(&place).map_err(Failure::bad)?;
+    let is_folder = kind.as_ref().is_some_and(std::fs::Metadata::is_dir);
+    if is_folder && what_lies_at(&place.join(SETTINGS)).map_err(Failure::bad)?.is_none() {
         let below = runs_below(&place);
         if !below.is_empty() {
             return Err(Failure::bad(format!(
@@ -32,7 +35,7 @@ pub fn run(text: &OsStr) -> Result<PathBuf, Failure> {
             )));
         }
     }
-    if !place.exists() && !zoo::is_agent(text) {
+    if kind.is_none() && !zoo::is_agent(text) {
         let near =
             near(&place).map_or_else(String::new, |near| format!(" did you mean {}?", quote(near)));
         return Err(Failure::bad(format!(

@@ -2,7 +2,9 @@
 
 use crate::args::{EnvArgs, LooksArgs, Observation, ObservationArgs, Rules, Size, View};
 use crate::failure::Failure;
-use hasard_envs::{EnvError, EnvId, EnvOptions, FrameSize, ObservationKind, Policy, RuleSet};
+use hasard_envs::{
+    EnvError, EnvId, EnvOptions, FrameSize, ObservationKind, Policy, RuleSet, Scenario, own,
+};
 use hasard_learn::config::EnvConfig;
 use hasard_learn::config::place::kept;
 use hasard_play::ViewKind;
@@ -22,6 +24,38 @@ impl From<Rules> for RuleSet {
 /// The environment id, or the line that names the nearest one.
 pub fn env_id(text: &str) -> Result<EnvId, Failure> {
     text.parse().map_err(Failure::bad)
+}
+
+/// Most warnings of a task's file that are said before it is played; `hasard check` lists all.
+const MOST_WARNINGS: usize = 3;
+
+/// Says what `hasard check` warns of in a task's own file: such as that nothing in it gives a reward.
+pub fn warn_of_task(scenario: Scenario) {
+    let Some(file) = scenario.file else { return };
+    // What a map leaves out is said of each task that is played.
+    let mut warnings = own::check(file.text).mistakes;
+    warnings.retain(|warning| !warning.text.starts_with("left out: "));
+    let path = file.path;
+    for warning in warnings.iter().take(MOST_WARNINGS) {
+        note!("hasard: {path}:{warning}");
+    }
+    match warnings.len().saturating_sub(MOST_WARNINGS) {
+        0 => {}
+        more => note!("hasard: {path}: and {more} more; `hasard check {path}` lists them"),
+    }
+}
+
+/// Refuses episodes seeded `seed`, `seed + 1`, ... that would pass the last seed: they would go on
+/// from 0, among those of trainings.
+pub fn last_seed(seed: u64, episodes: u32) -> Result<(), Failure> {
+    let most = u64::MAX - u64::from(episodes.saturating_sub(1));
+    if seed <= most {
+        return Ok(());
+    }
+    Err(Failure::bad(format!(
+        "--seed {seed}: {episodes} episodes from there pass the last seed, {}; give {most} or less",
+        u64::MAX
+    )))
 }
 
 /// An environment id without its level, or the whole text if it is none.

@@ -43,6 +43,7 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
     folder.file("binary.agent", &[0, 159, 146, 150, 255, 3]);
     folder.file("cut.wad", b"IWAD\x05\0\0\0\x0c\0\0\0");
     folder.file("text.wad", b"hello");
+    folder.file("a.csv", b"action\nMOVE_FORWARD\n");
     std::fs::create_dir(folder.0.join("folder")).unwrap();
     for (line, words) in [
         (
@@ -73,10 +74,22 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("rollout RemedyRushLevel1-v0 --maps folder --iwad none.wad", &["folder"]),
         ("bench RemedyRushLevel1-v0 --learn --set learning.rate=fast", &["learning.rate=fast"]),
         ("bench RemedyRushLevel1-v0 --set learning.rate=1", &["--learn"]),
+        (
+            "bench RemedyRushLevel1-v0 --envs 65536 --size 1920x1080 --frame-stack 16",
+            &["65536", "memory"],
+        ),
         ("train RemedyRushLevel1-v0 --maps text.wad --out new", &["text.wad"]),
         ("record RemedyRushLevel1-v0 -o a.avi", &["a.avi", ".mp4, .gif, .episode"]),
         ("record RemedyRushLevel1-v0 -o a", &["--out a", ".mp4"]),
         ("record RemedyRushLevel1-v0 -o a.episode --policy hold:CROUCH", &["--full-actions"]),
+        ("record RemedyRushLevel1-v0 -o a.episode --size 64x48", &["--size: an .episode", ".mp4"]),
+        ("record RemedyRushLevel1-v0 -o a.episode --beside depth", &["--beside", "leave it out"]),
+        ("record RemedyRushLevel1-v0 -o a.episode --quality 5", &["--quality", "leave it out"]),
+        ("record RemedyRushLevel1-v0 -o a.episode --published-depth", &["--published-depth"]),
+        (
+            "record RemedyRushLevel1-v0 --size 1600x100 --beside depth -o a.gif",
+            &["a film cannot be 3212x", "3072"],
+        ),
         ("record folder -o a.mp4", &["folder", "config.json"]),
         ("record binary.episode -o a.mp4", &["binary.episode"]),
         ("record empty -o a.mp4", &["empty"]),
@@ -94,8 +107,24 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("trace RemedyRushLevel1-v0", &["--actions"]),
         ("trace RemedyRushLevel1-v0 --actions empty --frame-skip 8", &["--frame-skip 8", "leave"]),
         ("trace RemedyRushLevel1-v0 --actions empty --size 64x48", &["--size 64x48", "leave"]),
+        (
+            "trace RemedyRushLevel1-v0 --actions a.csv --start=30000,0,0,0",
+            &["off the map", "X from"],
+        ),
+        // In a pillar.
+        ("trace RemedyRushLevel1-v0 --actions a.csv --start=0,0,0,0", &["is in rock", "Y from"]),
+        (
+            "trace RemedyRushLevel1-v0 --actions a.csv --start=320,320,2000,0",
+            &["Z is in rock", "160"],
+        ),
+        ("trace RemedyRushLevel1-v0 --actions a.csv --start=320,320,-50,0", &["Z is in rock"]),
         ("eval none", &["none"]),
         ("eval zoo:nobody", &["zoo:nobody", "zoo"]),
+        (
+            "eval zoo:RemedyRushLevel1 --seed 18446744073709551615 --episodes 2",
+            &["--seed 18446744073709551615", "give 18446744073709551614 or less"],
+        ),
+        ("highlights --seed 18446744073709551615 --episodes 3", &["give 18446744073709551613 or"]),
         ("eval zoo:RemedyRushLevel1 --episodes 500 --worst 1 -o /proc/x/w.mp4", &["/proc/x"]),
         ("export-agent none", &["none"]),
         ("record binary.agent -o a.mp4", &["binary.agent", "export-agent"]),
@@ -143,7 +172,7 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
     }
     let left: Vec<_> =
         std::fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left.len(), 7, "a refused command left something behind: {left:?}");
+    assert_eq!(left.len(), 8, "a refused command left something behind: {left:?}");
 }
 
 #[test]

@@ -40,8 +40,8 @@ const HOUSES: &[House] = &[
     House {
         in_crate: "envs", folder: "", without_circles: &[""], imports: 250,
         order: &[
-            "error", "spaces", "interface", "scenarios", "registry", "maps", "options", "single", "policies",
-            "own", "vec_env", "bench",
+            "error", "machine_memory", "spaces", "interface", "scenarios", "registry", "maps", "options", "single",
+            "policies", "own", "vec_env", "bench",
         ],
     },
     House {

@@ -255,6 +255,7 @@ fn a_sweep_that_cannot_work_does_not_begin() {
             "frames = 4096\nscenarios = [\"RemedyRush\"]\nlevels = [1]\nalgorithms = [\"PPO\"]\nseeds = [1]\n{lines}\n"
         )
     };
+    folder.file("text.wad", b"hello");
     let long = format!("out = \"new\"\n[options]\nset = \"learning.rate=0.{}1\"", "0".repeat(300));
     for (lines, named) in [
         ("out = \"file/runs\"", "file: is a file"),
@@ -262,11 +263,49 @@ fn a_sweep_that_cannot_work_does_not_begin() {
         ("out = \"new\"\n[options]\ncurriculum = \"1:400,2:600\"", "--curriculum 1:400,2:600"),
         ("out = \"new\"\n[options]\nset = \"seed=3\"", "--set seed"),
         ("out = \"new\"\n[options]\ninit-from = \"nowhere\"", "nowhere"),
+        ("out = \"new\"\n[options]\niwad = 5", "s.toml: `iwad` must be a path in quotes"),
+        (
+            "out = \"new\"\n[options]\niwad = [\"none.wad\"]",
+            "none.wad: cannot read: No such file or directory (os error 2); name a file that is there",
+        ),
+        ("out = \"new\"\n[options]\niwad = \"text.wad\"", "not a WAD"),
+        ("out = \"new\"\n[options]\nmaps = \"nowhere\"", "remedy_rush/level_1.wad"),
+        ("out = \"new\"\n[options]\nmaps = \"text.wad\"", "not a WAD"),
     ] {
         folder.file("s.toml", sweep(lines).as_bytes());
-        let said = folder.refused("sweep s.toml --json");
-        assert!(said.contains(named), "{lines}: {said}");
+        // A dry run says as much, before it lists or measures anything.
+        for how in ["--json", "--dry-run"] {
+            let said = folder.refused(&format!("sweep s.toml {how}"));
+            assert!(said.contains(named), "{lines}: {said}");
+            if let Some(key) = ["iwad", "maps"].iter().find(|key| lines.contains(*key)) {
+                assert!(said.contains("s.toml: `") && said.contains(key), "{lines}: {said}");
+            }
+        }
     }
+    folder.file("s.toml", sweep("").as_bytes());
+    let said = folder.refused("sweep s.toml --option iwad=none.wad --dry-run");
+    assert!(said.contains("--option iwad=none.wad: "), "{said}");
     assert_eq!(folder.read("file"), b"mine");
     assert!(!folder.0.join("new").exists());
+}
+
+/// An agent's file gives way to another, and nothing else does; what is one already is no run.
+#[test]
+fn an_exported_agent_replaces_agents_alone() {
+    let folder = trained("exported");
+    folder.file("notes.agent", b"mine");
+    let said = folder.refused("export-agent run -o notes.agent");
+    assert!(said.contains("notes.agent") && said.contains("another name with --out"), "{said}");
+    assert_eq!(folder.read("notes.agent"), b"mine");
+    folder.ok("export-agent run -o one.agent");
+    folder.ok("export-agent run --latest -o one.agent");
+    for (named, remedy) in [
+        ("zoo:RemedyRushLevel1", "takes this name, or name a run's folder"),
+        ("one.agent", "copy one.agent, or name a run's folder"),
+        ("notes.agent", "is a file; name a run's folder"),
+    ] {
+        let said = folder.refused(&format!("export-agent {named} -o two.agent"));
+        assert!(said.contains(named) && said.contains(remedy), "{named}: {said}");
+    }
+    assert!(!folder.0.join("two.agent").exists());
 }

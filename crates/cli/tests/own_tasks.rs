@@ -102,6 +102,39 @@ fn bad_files_are_refused_in_a_line_and_checked_in_full() {
     assert!(folder.refused("record . -o x.gif").len() < 300);
 }
 
+/// A run keeps the text of its task, so it goes on by the name of a file that is gone.
+#[test]
+fn a_run_goes_on_without_its_tasks_file() {
+    let folder = Folder::new("gone");
+    folder.ok("new garden");
+    folder.replace("garden.toml", "tics = 2100", "tics = 70");
+    folder.ok(&format!("train garden.toml --algo PPO --out run {SMALL}"));
+    folder.ok(&format!("train RemedyRushLevel1,garden.toml --algo PPO --out both {SMALL}"));
+    std::fs::remove_file(folder.0.join("garden.toml")).unwrap();
+    let said = folder.refused("train garden.toml --resume");
+    assert!(said.contains("hasard train garden.toml --resume --out RUN"), "{said}");
+    for (line, named) in [
+        ("train garden.toml --out new", "garden.toml: cannot be read"),
+        ("train garden.toml --resume --out new", "garden.toml: cannot be read"),
+        ("train other.toml --resume --out run", "hasard train Garden-v0 --resume --out run"),
+        ("train garden.toml#2 --resume --out run", "hasard train Garden-v0 --resume --out run"),
+        ("train garden.toml --resume --out both", "of RemedyRushLevel1-v0,Garden-v0"),
+    ] {
+        let said = folder.refused(line);
+        assert!(said.contains(named), "{line}: {said}");
+    }
+    assert!(!folder.0.join("new").exists());
+    let frames = |run: &str| {
+        let config: serde_json::Value =
+            serde_json::from_slice(&folder.read(&format!("{run}/config.json"))).unwrap();
+        config["frames"].as_u64()
+    };
+    folder.ok("train garden.toml --resume --out run --frames 1024");
+    folder.ok("train elsewhere/garden.toml --resume --out run --frames 1536");
+    folder.ok("train RemedyRushLevel1,garden.toml --resume --out both --frames 1024");
+    assert_eq!((frames("run"), frames("both")), (Some(1536), Some(1024)));
+}
+
 /// One network acts in all lessons, and one name is one task: both are refused before anything is
 /// written.
 #[test]
@@ -163,8 +196,28 @@ fn files_have_the_endings_of_their_kind() {
     for command in ["check ok.toml -o x.gif", "render ok.toml -o x.gif"] {
         assert!(folder.refused(command).contains("ends in .png"), "{command}");
     }
+    folder.file("task", &folder.read("ok.toml"));
+    for command in ["check task", "rollout task", "train task"] {
+        assert!(folder.refused(command).contains("ends in .toml"), "{command}");
+    }
     let left = std::fs::read_dir(&folder.0).unwrap().count();
-    assert_eq!(left, 1, "a refused command left something behind");
+    assert_eq!(left, 2, "a refused command left something behind");
+}
+
+/// Nobody trains for hours on a task that `check` would have said is none.
+#[test]
+fn a_task_without_reward_says_so_before_it_is_played() {
+    let folder = Folder::new("without-reward");
+    folder.ok("new task");
+    folder.replace("task.toml", "reward = 1.0\n", "reward = 0\n");
+    let said = "hasard: task.toml:1:1: warning: no [[when]] gives a reward: there is nothing to learn";
+    let train = format!("train task.toml --algo PPO --out run {SMALL}");
+    for command in ["rollout task.toml --episodes 1", &train] {
+        let (_, error) = folder.both(command);
+        assert_eq!(error.matches(said).count(), 1, "{command}: {error}");
+    }
+    let (_, quiet) = folder.both(&format!("train task.toml --algo PPO --quiet --out other {SMALL}"));
+    assert!(!quiet.contains("warning"), "{quiet}");
 }
 
 /// The line that `--maps` has: once, from whatever plays the task, and `check` lists it.

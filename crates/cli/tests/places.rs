@@ -286,3 +286,28 @@ fn the_run_of_a_graphics_card_goes_on_on_the_processor() {
         );
     }
 }
+
+/// A link to itself stands for what the system does not show, such as a run in a folder that is
+/// closed to us: that is not "no such run".
+#[test]
+fn what_cannot_be_seen_is_not_said_to_be_absent() {
+    let folder = Folder::new("closed");
+    std::os::unix::fs::symlink("circle", folder.0.join("circle")).unwrap();
+    fs::create_dir(folder.0.join("run")).unwrap();
+    std::os::unix::fs::symlink("config.json", folder.0.join("run/config.json")).unwrap();
+    for run in ["circle", "run"] {
+        for line in [
+            format!("eval {run} --episodes 1"),
+            format!("export-agent {run} -o a.agent"),
+            format!("record {run} --steps 2 -o a.gif"),
+            format!("rollout {ENV} --policy run:{run} --episodes 1"),
+            format!("report {run}"),
+        ] {
+            let error = folder.refused("", &line);
+            assert!(error.contains(run) && error.contains("cannot read"), "{line}: {error}");
+        }
+    }
+    if cfg!(feature = "serve") {
+        assert!(folder.refused("", "serve circle").contains("cannot read"));
+    }
+}

@@ -39,6 +39,7 @@
 mod bench;
 mod error;
 mod interface;
+mod machine_memory;
 pub mod maps;
 mod options;
 pub mod own;
@@ -61,6 +62,7 @@ pub use interface::environment::Environment;
 pub use interface::happening::{DAMAGE_CAUSES, Happening, HappeningKind};
 pub use interface::insight::{self, Insight};
 pub use interface::step::{CostTerm, Step};
+pub use machine_memory::machine_memory;
 pub use options::{EnvOptions, FRAME_SKIP, Layout, ObservationKind};
 pub use policies::policy::{Policy, PolicyRun};
 pub use policies::rollout::rollout;

@@ -1,7 +1,7 @@
 //! A moving picture in the format that its file's name asks for.
 
 use crate::gif::GifWriter;
-use crate::video::VideoWriter;
+use crate::video::{VideoWriter, check_size};
 use crate::{MediaError, Picture, Quality};
 use std::path::Path;
 
@@ -41,6 +41,8 @@ impl AnimationWriter {
                 Ok(AnimationWriter(Format::Video(Box::new(writer))))
             }
             Some("gif") if frames_per_second.0 > 0 => {
+                // What one format takes the other takes too, so that a film's name can be changed.
+                check_size(width, height)?;
                 let seconds = f64::from(frames_per_second.1) / f64::from(frames_per_second.0);
                 Ok(AnimationWriter(Format::Gif(
                     Box::new(GifWriter::create(path, width, height)?),
@@ -92,11 +94,24 @@ mod tests {
             assert!(bytes[..16].windows(head.len()).any(|part| part == head), "{ending}");
             std::fs::remove_file(path).unwrap();
         }
-        let error =
-            AnimationWriter::create(Path::new("a.avi"), 20, 10, (35, 4), Quality::default())
-                .err()
-                .unwrap()
-                .to_string();
+        let error = refused("a.avi", 20, 10);
         assert_eq!(error, "a.avi: has a name that ends neither in .mp4 nor in .gif");
+    }
+
+    fn refused(name: &str, width: usize, height: usize) -> String {
+        let made =
+            AnimationWriter::create(Path::new(name), width, height, (35, 4), Quality::default());
+        made.err().unwrap().to_string()
+    }
+
+    /// A film of two views was written as GIF, and as MP4 it was too wide.
+    #[test]
+    fn both_formats_are_as_large() {
+        for (width, height) in [(3073, 10), (10, 3073), (0, 10)] {
+            let error = refused("a.gif", width, height);
+            assert_eq!(error, refused("a.mp4", width, height));
+            assert!(error.contains(&format!("cannot be {width}x{height}")), "{error}");
+        }
+        assert!(!Path::new("a.gif").exists());
     }
 }

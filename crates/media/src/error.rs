@@ -48,7 +48,7 @@ impl std::fmt::Display for MediaError {
                         f.write_str("; make room, or choose another place")
                     }
                     (ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem, "read") => {
-                        f.write_str("; choose a file that you may read")
+                        f.write_str("; choose one that you may read")
                     }
                     (ErrorKind::NotFound, "read") => f.write_str("; name a file that is there"),
                     (_, "read") => Ok(()),

@@ -184,6 +184,21 @@ pub fn is_special(kind: &std::fs::Metadata) -> bool {
     !kind.is_file() && !kind.is_dir()
 }
 
+/// What lies at a path, if anything does.
+///
+/// # Errors
+/// When the system does not say, as below a folder that is closed to us: unlike `exists`, this takes
+/// no such thing for one that is not there.
+pub fn what_lies_at(path: &Path) -> Result<Option<std::fs::Metadata>, MediaError> {
+    use std::io::ErrorKind::{InvalidFilename, NotADirectory, NotFound};
+    match std::fs::metadata(path) {
+        Ok(kind) => Ok(Some(kind)),
+        // Below a file nothing lies, nor under a name that no file system takes.
+        Err(e) if matches!(e.kind(), NotFound | NotADirectory | InvalidFilename) => Ok(None),
+        Err(e) => Err(MediaError::io(path, "read", e)),
+    }
+}
+
 /// Opens a regular file. A pipe in its place would be waited for, and with it whatever is locked
 /// meanwhile.
 ///
@@ -269,6 +284,22 @@ mod tests {
             let error = read_limited(Path::new(path), 10).unwrap_err().to_string();
             assert_eq!(error, format!("{path}: {NO_FILE}"));
         }
+    }
+
+    /// A link to itself: the system does not say what lies there, to whomever.
+    #[cfg(unix)]
+    #[test]
+    fn what_the_system_does_not_say_is_not_taken_for_absent() {
+        let folder = std::env::temp_dir().join(format!("hasard-lies-{}", std::process::id()));
+        write_whole(&folder.join("file"), b"").unwrap();
+        std::os::unix::fs::symlink("circle", folder.join("circle")).unwrap();
+        assert!(what_lies_at(&folder).unwrap().unwrap().is_dir());
+        for absent in ["none", "file/below", &"a".repeat(300)] {
+            assert!(what_lies_at(&folder.join(absent)).unwrap().is_none(), "{absent}");
+        }
+        let error = what_lies_at(&folder.join("circle")).unwrap_err().to_string();
+        assert!(error.contains("circle: cannot read: "), "{error}");
+        std::fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]

@@ -17,6 +17,16 @@ use std::path::{Path, PathBuf};
 /// Largest side in pixels: what level 5.1 of the standard holds in a square.
 const MAX_SIDE: usize = 3072;
 
+/// Refuses a film that is too large, whatever its format.
+pub(crate) fn check_size(width: usize, height: usize) -> Result<(), MediaError> {
+    if (1..=MAX_SIDE).contains(&width) && (1..=MAX_SIDE).contains(&height) {
+        return Ok(());
+    }
+    Err(MediaError::Size(format!(
+        "a film cannot be {width}x{height}; its sides are 1 to {MAX_SIDE}: give a smaller size, or fewer views beside it"
+    )))
+}
+
 /// Writes an MP4 frame by frame.
 pub(crate) struct VideoWriter {
     path: PathBuf,
@@ -45,11 +55,7 @@ impl VideoWriter {
         frames_per_second: (u32, u32),
         quality: Quality,
     ) -> Result<VideoWriter, MediaError> {
-        if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
-            return Err(MediaError::Size(format!(
-                "a video cannot be {width}x{height}; its sides are 1 to {MAX_SIDE}: give a smaller size, or fewer views beside it"
-            )));
-        }
+        check_size(width, height)?;
         let (frames, seconds) = frames_per_second;
         if frames == 0
             || seconds == 0

@@ -5,7 +5,7 @@ use crate::run::Kept;
 use std::fmt::Write;
 
 /// What a document that puts the tables in needs in its head.
-const HEAD: &str = "% Tables of `hasard report --latex`. In the head of your document:\n\
+pub const HEAD: &str = "% Tables of `hasard report --latex`. In the head of your document:\n\
     %   \\usepackage{booktabs,longtable,xcolor,graphicx}\n\
     % Green: the cost is within the budget, underlined: with the upper end of its 95 % interval.\n\
     \\providecommand{\\within}[1]{\\textcolor{green!45!black}{#1}}\n\

@@ -23,6 +23,7 @@ mod csv;
 pub mod curve;
 pub mod document;
 mod escape;
+mod former;
 pub mod group;
 pub mod heat;
 mod latex;

@@ -8,12 +8,15 @@ use std::fmt::Write;
 /// Folder of figures and pictures, beside the Markdown file.
 pub const FIGURES: &str = "figures";
 
+/// What stands below the title of every report: by this line the folder of an earlier one is known.
+pub const LEGEND: &str = "A ✓ stands for green ground, a (✓) for green letters.";
+
 /// Writes the report. Bold is bold; a tick stands for green ground, one in brackets for green
 /// letters.
 #[must_use]
 pub fn markdown(document: &Document) -> String {
     let mut text = format!(
-        "# {}\n\n{}\n\nA ✓ stands for green ground, a (✓) for green letters.\n",
+        "# {}\n\n{}\n\n{LEGEND}\n",
         escape_markdown(&document.title),
         escape_markdown(&document.subtitle)
     );

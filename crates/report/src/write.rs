@@ -2,6 +2,7 @@
 
 use crate::chart::{pdf, rasterise, standalone_svg};
 use crate::document::{Block, Document};
+use crate::former::{Former, LIST, PAPER, TABLES};
 use crate::group::Group;
 use crate::latex::{DOCUMENT, latex};
 use crate::markdown::{FIGURES, markdown};
@@ -29,10 +30,12 @@ pub struct Written {
 
 /// Reads the runs and episodes below `paths` and writes into `out`: `index.html`, `report.md`,
 /// `experiments.csv`, `runs.csv`, `curves.csv`, and `figures/` with each figure as SVG and PNG and
-/// the heatmaps as PNG and GIF. The same runs give the same bytes.
+/// the heatmaps as PNG and GIF. The same runs give the same bytes. An earlier report in `out` goes;
+/// other files stay.
 ///
 /// # Errors
-/// One line that names the path and the remedy: nothing found, or a file that cannot be written.
+/// One line that names the path and the remedy: nothing found, files in `out` and none of a report,
+/// or a file that cannot be written.
 pub fn write_report(paths: &[PathBuf], out: &Path, title: &str) -> Result<Written, String> {
     write(paths, out, title, false)
 }
@@ -78,41 +81,55 @@ impl Read {
 }
 
 fn write(paths: &[PathBuf], out: &Path, title: &str, for_papers: bool) -> Result<Written, String> {
+    // Before the work: reading a campaign takes minutes.
+    let former = Former::of(out)?;
     let Read { found, warnings, groups, document } = Read::of(paths, title)?;
-    let mut files = Vec::new();
-    let mut write = |name: &str, bytes: &[u8]| {
-        let path = out.join(name);
-        write_whole(&path, bytes).map_err(|error| error.to_string())?;
-        files.push(path);
-        Ok::<(), String>(())
-    };
-    write("index.html", page::page(&document).as_bytes())?;
-    write("report.md", markdown(&document).as_bytes())?;
-    write("experiments.csv", csv::experiments_csv(&groups).as_bytes())?;
-    write("runs.csv", csv::runs_csv(&groups, &Baselines::new(&found, &groups)).as_bytes())?;
-    write("curves.csv", csv::curves_csv(&groups).as_bytes())?;
+    let files = contents(&found, &groups, &document, for_papers);
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    former.give_way(out, &names)?;
+    // First the list by which the next report knows the others, should this one be cut short.
+    let (list, others): (Vec<_>, Vec<_>) = files.iter().partition(|(name, _)| name == LIST);
+    for (name, bytes) in list.into_iter().chain(others) {
+        write_whole(&out.join(name), bytes).map_err(|error| error.to_string())?;
+    }
+    let files = files.iter().map(|(name, _)| out.join(name)).collect();
+    let runs = groups.iter().map(|group| group.runs.len()).sum();
+    Ok(Written { page: out.join("index.html"), files, runs, experiments: groups.len(), warnings })
+}
+
+/// Every file of a report, by its name in the folder, the page first.
+fn contents(
+    found: &Found,
+    groups: &[Group],
+    document: &Document,
+    for_papers: bool,
+) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    let mut add = |name: &str, bytes: Vec<u8>| files.push((name.to_owned(), bytes));
+    add("index.html", page::page(document).into());
+    add(LIST, markdown(document).into());
+    add("experiments.csv", csv::experiments_csv(groups).into());
+    add("runs.csv", csv::runs_csv(groups, &Baselines::new(found, groups)).into());
+    add("curves.csv", csv::curves_csv(groups).into());
     if for_papers {
-        write("tables.tex", latex(&document, FIGURES).as_bytes())?;
-        write("paper.tex", DOCUMENT.as_bytes())?;
+        add(TABLES, latex(document, FIGURES).into());
+        add(PAPER, DOCUMENT.into());
     }
     for block in document.sections.iter().flat_map(|section| &section.blocks) {
         match block {
             Block::Figure(figure) => {
-                write(
-                    &format!("{FIGURES}/{}.svg", figure.slug),
-                    standalone_svg(&figure.drawing, &figure.caption).as_bytes(),
-                )?;
+                let of = |end: &str| format!("{FIGURES}/{}.{end}", figure.slug);
+                add(&of("svg"), standalone_svg(&figure.drawing, &figure.caption).into());
                 if for_papers {
-                    write(&format!("{FIGURES}/{}.pdf", figure.slug), &pdf(&figure.drawing))?;
+                    add(&of("pdf"), pdf(&figure.drawing));
                 }
                 if let Some(picture) = rasterise(&figure.drawing) {
-                    write(&format!("{FIGURES}/{}.png", figure.slug), &png::encode(&picture))?;
+                    add(&of("png"), png::encode(&picture));
                 }
             }
-            Block::Image(image) => write(&format!("{FIGURES}/{}", image.file), &image.bytes)?,
+            Block::Image(image) => add(&format!("{FIGURES}/{}", image.file), image.bytes.clone()),
             Block::Heading(_) | Block::Table(_) => {}
         }
     }
-    let runs = groups.iter().map(|group| group.runs.len()).sum();
-    Ok(Written { page: out.join("index.html"), files, runs, experiments: groups.len(), warnings })
+    files
 }

@@ -353,3 +353,41 @@ fn seeds_whose_checkpoints_were_selected_by_other_settings_are_named() {
     assert_eq!(written.warnings.len(), 1);
     assert!(text.contains("4 runs of 1 experiment"), "{text}");
 }
+
+/// Whatever spoils its settings, a run is a run: its episodes are no play of anybody's.
+#[test]
+fn a_damaged_run_is_named_and_alone_it_is_an_error() {
+    let folder = Folder::new("damaged");
+    let (runs, out) = (folder.0.join("runs"), folder.0.join("out"));
+    let damaged = run(&folder, "damaged", ENV, "PPO", 1e6, "");
+    episodes(&damaged, "eval.jsonl", &[(ENV, 1, 10.0)]);
+    std::fs::remove_file(damaged.join("config.json")).unwrap();
+    std::fs::create_dir(damaged.join("config.json")).unwrap();
+    let named = format!("{}: is a folder", damaged.join("config.json").display());
+    let alone = || write_report(std::slice::from_ref(&runs), &out, "Damaged").unwrap_err();
+    assert!(alone().starts_with("no run below ") && alone().contains(&named), "{}", alone());
+    // Random play beside it makes no report of runs either.
+    chance(&folder, ENV);
+    assert!(alone().contains(&named) && !out.exists(), "{}", alone());
+    run(&folder, "whole", ENV, "PPO", 1e6, "");
+    let written = report(&folder).0;
+    assert_eq!((written.runs, written.warnings.len()), (1, 1));
+    assert!(written.warnings[0].to_string().starts_with(&named), "{:?}", written.warnings);
+}
+
+/// A link to itself stands for what the system does not show: that is not "no such file".
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_seen_is_not_said_to_be_absent() {
+    use std::os::unix::fs::symlink;
+    let folder = Folder::new("closed");
+    let path = run(&folder, "one", ENV, "PPO", 1e6, "");
+    std::fs::remove_file(path.join("config.json")).unwrap();
+    symlink("config.json", path.join("config.json")).unwrap();
+    symlink("circle", folder.0.join("circle")).unwrap();
+    for (named, said) in [("circle", "circle: cannot read: "), ("runs", "json: cannot read: ")] {
+        let out = folder.0.join("out");
+        let error = write_report(&[folder.0.join(named)], &out, "Closed").unwrap_err();
+        assert!(error.contains(said), "{error}");
+    }
+}

@@ -64,7 +64,7 @@ fn understand(text: &str) -> Result<Sweep, String> {
         .find(|key| !TOP_KEYS.contains(&key.as_str()) && !GRID_KEYS.contains(&key.as_str()))
     {
         return Err(format!(
-            "unknown key `{key}`; known are {}, {}",
+            "unknown key `{key}`; known are {}, {}; options of `hasard train` go under [options]",
             TOP_KEYS.join(", "),
             GRID_KEYS.join(", ")
         ));

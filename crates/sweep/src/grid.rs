@@ -299,7 +299,7 @@ impl Grid {
                 .iter()
                 .any(|value| matches!(value, OptionValue::Text(text) if text.is_empty() || text.contains(char::is_control)))
             {
-                return Err(format!("the option `{name}` has an empty or unprintable value"));
+                return Err(format!("the option `{name}` has an empty or unprintable value; give another, or leave it out"));
             }
         }
         Ok(())

@@ -8,6 +8,9 @@ use toml::{Table, Value};
 pub(crate) const GRID_KEYS: [&str; 7] =
     ["frames", "seeds", "scenarios", "levels", "algorithms", "options", "settings"];
 
+/// Options that are the path of a file or a folder: a number is none, though it is a text elsewhere.
+const PLACES: [&str; 2] = ["iwad", "maps"];
+
 /// Puts what a table says into a grid.
 pub(crate) fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
     if let Some(frames) = table.get("frames") {
@@ -32,12 +35,12 @@ pub(crate) fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
     }
     if let Some(options) = table.get("options") {
         for (name, value) in options.as_table().ok_or("`options` must be a table")? {
-            let values = list(
-                value,
-                name,
-                "a text, number, true or false, or a list of them",
-                option_value,
-            )?;
+            let values = if PLACES.contains(&name.as_str()) {
+                list(value, name, "a path in quotes, or a list of them", place)?
+            } else {
+                let kind = "a text, number, true or false, or a list of them";
+                list(value, name, kind, option_value)?
+            };
             match grid.options.iter_mut().find(|(known, _)| known == name) {
                 Some((_, known)) => *known = values,
                 None => grid.options.push((name.clone(), values)),
@@ -71,6 +74,12 @@ fn named_settings(
             ];
             if let Some((_, key)) = own.iter().find(|(setting, _)| *setting == name) {
                 return Err(format!("`settings.{name}` would be the same for all runs; use {key}"));
+            }
+            let option = name.strip_prefix("env.").unwrap_or(&name);
+            if PLACES.contains(&option) {
+                return Err(format!(
+                    "`settings.{name}` is an option; use {option} under [options]"
+                ));
             }
             let text = setting_value(value).ok_or_else(|| {
                 format!("`settings.{name}` must be a text, a number, true, false or a list of them")
@@ -110,6 +119,11 @@ pub(crate) fn algorithms(value: &Value) -> Result<Vec<String>, String> {
 
 pub(crate) fn levels(value: &Value) -> Result<Vec<u32>, String> {
     list(value, "levels", "1, 2 or 3", |v| v.as_integer().and_then(|n| u32::try_from(n).ok()))
+}
+
+fn place(value: &Value) -> Option<OptionValue> {
+    let path = value.as_str().filter(|path| !path.is_empty())?;
+    Some(OptionValue::Text(path.to_owned()))
 }
 
 pub(crate) fn option_value(value: &Value) -> Option<OptionValue> {

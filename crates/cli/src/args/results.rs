@@ -12,7 +12,7 @@ pub struct ReportArgs {
     /// rollout --json`
     #[arg(required = true)]
     pub runs: Vec<PathBuf>,
-    /// Folder to write
+    /// Folder to write: a new or an empty one, or that of an earlier report, which goes
     #[arg(short, long, value_name = "DIR", default_value = "report")]
     pub out: PathBuf,
     /// Title of the page

@@ -1,7 +1,7 @@
 //! Flags of the commands that train and judge agents.
 
 use crate::args::common::{EnvArgs, ObservationArgs, PlaceArgs, Rules, UnusedSeed};
-use crate::number::{env_id, positive, whole};
+use crate::number::{env_id, env_id_of_run, positive, whole};
 use clap::Args;
 use hasard_envs::Scenario;
 use std::ffi::OsString;
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 pub struct TrainArgs {
     /// Environment id, or the file of a task of your own; several, with commas between, for one
     /// agent of several tasks
-    #[arg(value_parser = env_id)]
+    #[arg(value_parser = env_id_of_run)]
     pub env: String,
     /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
     #[arg(long, default_value = "PPOPID")]

@@ -19,6 +19,14 @@ pub fn run(args: &CheckArgs) -> Outcome {
             "{name}: all levels are checked; give {whole}, and --level {level} to draw that one"
         )));
     }
+    let spelt = args.file.to_str().ok_or_else(|| {
+        Failure::bad(format!("{name}: a task's name is UTF-8 text; rename the file"))
+    })?;
+    if args.file.exists() && !own::is_file(spelt) {
+        return Err(Failure::bad(format!(
+            "{name}: a task's file ends in .toml, by which other commands know it; rename it"
+        )));
+    }
     let (text, unread) = own::read_to_check(&args.file).map_err(Failure::bad)?;
     let checked = own::check(&text);
     let file = args.file.display().to_string();

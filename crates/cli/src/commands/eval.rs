@@ -6,6 +6,7 @@ use crate::args::{EvalArgs, Size, View};
 use crate::episode_lines::EpisodeLines;
 use crate::failure::{Failure, Outcome};
 use crate::places;
+use crate::settings::last_seed;
 use crate::ticker::Ticker;
 use hasard_envs::{Env, EnvOptions, Episode, RuleSet, VecEnv};
 use hasard_learn::config::{Constraint, TrainConfig};
@@ -58,6 +59,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
             args.episodes
         )));
     }
+    last_seed(args.seed, args.episodes)?;
     let run = places::run(&args.run)?;
     // A place that cannot be written ends it before the first episode, not after the last.
     let written = film.map(|(_, out)| out).into_iter().chain(args.calibration.as_deref());

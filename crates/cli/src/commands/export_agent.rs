@@ -7,7 +7,7 @@ use crate::zoo::ENDING;
 use hasard_learn::error::LearnError;
 use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
 use hasard_learn::runs::run_directory::damaged_selection;
-use hasard_media::files::WholeFile;
+use hasard_media::files::{WholeFile, what_lies_at};
 use hasard_media::shell::quote;
 use serde_json::json;
 use std::io::Write;
@@ -21,9 +21,42 @@ pub fn export_selected(run: &Path) -> Result<Vec<u8>, LearnError> {
     export(run)
 }
 
+/// Refuses what is a file already, where a run's folder is wanted.
+fn refuse_file(text: &Path, place: &Path) -> Outcome {
+    if !AgentFile::is_at(place) {
+        return Ok(());
+    }
+    let text = text.display();
+    if AgentFile::read(place).is_err() {
+        return Err(Failure::bad(format!("{text} is a file; name a run's folder")));
+    }
+    let copy = if place.is_file() {
+        format!("copy {}", quote(place))
+    } else {
+        "every command that plays an agent takes this name".into()
+    };
+    Err(Failure::bad(format!("{text} is an agent's file already: {copy}, or name a run's folder")))
+}
+
+/// Refuses a name under which something else than an agent's file lies.
+fn keep_others(out: &Path) -> Outcome {
+    let there = what_lies_at(out).map_err(Failure::bad)?;
+    if !there.is_some_and(|kind| kind.is_file()) {
+        return Ok(());
+    }
+    AgentFile::read(out).map(drop).map_err(|error| match error {
+        LearnError::Content { .. } => Failure::bad(format!(
+            "{}: what is there is no agent's file; move it, or choose another name with --out",
+            out.display()
+        )),
+        other => Failure::bad(other),
+    })
+}
+
 /// Runs the command.
 pub fn run(args: &ExportAgentArgs) -> Outcome {
     let run = places::run(args.run.as_os_str())?;
+    refuse_file(&args.run, &run)?;
     let bytes = if args.latest { export_latest(&run) } else { export_selected(&run) };
     let bytes = bytes.map_err(Failure::bad)?;
     let file = AgentFile::parse(&bytes).map_err(Failure::bad)?;
@@ -35,6 +68,7 @@ pub fn run(args: &ExportAgentArgs) -> Outcome {
             out.display()
         )));
     }
+    keep_others(&out)?;
     let mut whole = WholeFile::create(&out).map_err(Failure::bad)?;
     whole
         .write_all(&bytes)

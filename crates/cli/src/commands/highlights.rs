@@ -4,7 +4,7 @@ use crate::actor::Performance;
 use crate::args::HighlightsArgs;
 use crate::failure::{Failure, Outcome};
 use crate::places;
-use crate::settings::{Elsewhere, first_task};
+use crate::settings::{Elsewhere, first_task, last_seed};
 use crate::ticker::Ticker;
 use crate::zoo;
 use hasard_engine::render::FrameSize;
@@ -108,6 +108,7 @@ pub fn run(args: &HighlightsArgs) -> Outcome {
     if !(args.most_mb > 0.0 && args.most_mb.is_finite()) {
         return Err(Failure::bad(format!("--most-mb {}: give more than 0", args.most_mb)));
     }
+    last_seed(args.seed, args.episodes)?;
     let what = match args.what.as_slice() {
         [] => first_levels(),
         given => given.to_vec(),

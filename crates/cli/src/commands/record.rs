@@ -10,6 +10,7 @@ use crate::ticker::Ticker;
 use crate::zoo;
 use hasard_envs::{Env, EnvError, EnvId, EnvOptions, FrameSize, edit_distance, own};
 use hasard_media::episode::EpisodeFile;
+use hasard_media::files::what_lies_at;
 use hasard_media::shell::quote;
 use hasard_play::{Film, Recorder, Replay, Stage, Views};
 use serde_json::json;
@@ -67,6 +68,11 @@ pub fn run(args: &RecordArgs) -> Outcome {
         &args.out,
         &[("mp4", Kind::Film), ("gif", Kind::Film), ("episode", Kind::Episode)],
     )?;
+    if let Some(flag) = without_use(&args.film, args.env_args.size, Some(kind)) {
+        return Err(Failure::bad(format!(
+            "{flag}: an .episode holds seed and actions and no picture; leave it out, or give an --out that ends in .mp4 or .gif"
+        )));
+    }
     let usual = if is_gif(&args.out) { GIF_SIZE } else { Size { width: 320, height: 240 } };
     let looks = settings::env_options(&args.env_args, usual)?;
     let looks = settings::looking(looks, &args.film.looks);
@@ -101,7 +107,7 @@ pub fn run(args: &RecordArgs) -> Outcome {
         let policy = args.policy.clone().unwrap_or_else(|| "random".into());
         let id = env_id(&args.what.to_string_lossy()).map_err(Failure::bad)?;
         if let Err(error) = id.parse::<EnvId>()
-            && !what.exists()
+            && what_lies_at(what).map_err(Failure::bad)?.is_none()
         {
             // Of a word that is like no id the nearest says nothing.
             let remedy = match error {
@@ -197,7 +203,7 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
             "--step: is for a single picture; give an --out that ends in .png",
         ));
     }
-    if let Some(flag) = without_use(args, kind) {
+    if let Some(flag) = without_use(&args.film, args.size, kind) {
         return Err(Failure::bad(format!(
             "{flag}: is for what --out writes; {}",
             match kind {
@@ -241,13 +247,16 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
 }
 
 /// A flag of films or pictures that changes nothing of what is written.
-fn without_use(args: &ReplayArgs, kind: Option<Kind>) -> Option<&'static str> {
-    let (film, written) = (kind == Some(Kind::Film), kind.is_some());
+fn without_use(args: &FilmArgs, size: Option<Size>, kind: Option<Kind>) -> Option<&'static str> {
+    let film = kind == Some(Kind::Film);
+    let drawn = film || kind == Some(Kind::Picture);
     [
-        ("--size", args.size.is_some() && !written),
-        ("--beside", !args.film.beside.is_empty() && !written),
-        ("--frame-every", args.film.frame_every.is_some() && !film),
-        ("--quality", args.film.quality.is_some() && !film),
+        ("--size", size.is_some() && !drawn),
+        ("--beside", !args.beside.is_empty() && !drawn),
+        ("--frame-every", args.frame_every.is_some() && !film),
+        ("--quality", args.quality.is_some() && !film),
+        ("--published-depth", args.looks.published_depth && !drawn),
+        ("--published-colours", args.looks.published_colours && !drawn),
     ]
     .into_iter()
     .find_map(|(flag, without)| without.then_some(flag))

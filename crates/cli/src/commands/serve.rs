@@ -3,6 +3,8 @@
 use crate::args::ServeArgs;
 use crate::failure::{Failure, Outcome};
 #[cfg(feature = "serve")]
+use hasard_media::files::what_lies_at;
+#[cfg(feature = "serve")]
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 #[cfg(feature = "serve")]
 use std::path::{Path, PathBuf};
@@ -20,12 +22,14 @@ pub fn run(args: &ServeArgs) -> Outcome {
     for task in &tasks {
         hasard_envs::own::open(&task.to_string_lossy()).map_err(Failure::bad)?;
     }
-    if let Some(folder) = runs.iter().find(|folder| !folder.is_dir()) {
-        let remedy = "name a folder that holds runs, or none to wait for those below runs";
-        return Err(Failure::bad(format!(
-            "{}: there is no such folder; {remedy}",
-            folder.display()
-        )));
+    for folder in &runs {
+        if !what_lies_at(folder).map_err(Failure::bad)?.is_some_and(|kind| kind.is_dir()) {
+            let remedy = "name a folder that holds runs, or none to wait for those below runs";
+            return Err(Failure::bad(format!(
+                "{}: there is no such folder; {remedy}",
+                folder.display()
+            )));
+        }
     }
     places_are_there(args)?;
     let folders = if runs.is_empty() { vec!["runs".into()] } else { runs };

@@ -53,6 +53,7 @@ pub fn run(args: &TraceArgs) -> Outcome {
         }
     }
     if let Some(Start { position: [x, y, z], angle, pitch }) = start {
+        check_place(&env, args.start.as_deref().unwrap_or_default(), [x, y, z])?;
         env.world_mut().place_player(0, x, y, z, angle, pitch);
     }
     let mut out = BufWriter::new(std::io::stdout().lock());
@@ -110,6 +111,30 @@ fn parse_start(text: &str) -> Result<Start, Failure> {
         angle: Angle::from_degrees(angle),
         pitch: (pitch / 360.0 * 4_294_967_296.0) as i32,
     })
+}
+
+/// Refuses a start in rock, where the map has nothing to stand on: a tic there means nothing. That
+/// a wall or a thing is near is left to the player, as recordings begin in such places too.
+fn check_place(env: &Env, text: &str, [x, y, z]: [Fixed; 3]) -> Outcome {
+    let world = env.world();
+    let [west, south, east, north] = env.extent();
+    let within = (west..=east).contains(&(x.0 >> 16)) && (south..=north).contains(&(y.0 >> 16));
+    let refuse = |why: String| Err(Failure::bad(format!("--start '{text}': {why}")));
+    if !within || !world.map.is_inside(x, y) {
+        return refuse(format!(
+            "X,Y is in rock or off the map, which has X from {west} to {east} and Y from {south} to {north}; give a place on its \
+             floor, such as the episode's own that a trace without --start begins with"
+        ));
+    }
+    let here = world.sector(world.map.sector_at(x, y));
+    // Recordings round heights.
+    if z < here.floor - Fixed::from_int(1) || z > here.ceiling {
+        let (floor, ceiling) = (here.floor.to_f64(), here.ceiling.to_f64());
+        return refuse(format!(
+            "Z is in rock; give one from the floor, {floor}, to the ceiling, {ceiling}"
+        ));
+    }
+    Ok(())
 }
 
 /// The actions of a CSV file's `action` column, without its `start` and `FINISHED` rows.

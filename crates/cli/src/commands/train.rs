@@ -8,7 +8,7 @@ use crate::episode_lines::worth;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::{self, Manner};
 use crate::progress::{Progress, grouped};
-use crate::settings::{Elsewhere, scenario_of};
+use crate::settings::{Elsewhere, scenario_of, warn_of_task};
 use crate::zoo;
 use clap::ArgMatches;
 use hasard_envs::EnvOptions;
@@ -71,6 +71,9 @@ pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
         let config = fresh(args, typed)?;
         if !args.quiet {
             unread(args, config.algorithm).iter().for_each(|line| note!("{line}"));
+            let tasks = config.env.tasks();
+            let ids = tasks.iter().filter_map(|task| task.env_id().ok());
+            ids.for_each(|id| warn_of_task(id.scenario));
         }
         let start = match &args.init_from {
             Some(other) => Start::From(config.clone(), zoo::find(other.as_os_str())?),

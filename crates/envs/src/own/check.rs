@@ -1,18 +1,18 @@
 //! What a file says that can never happen.
 
 use super::mistakes::Mistakes;
-use super::model::{GenerateKind, MapPlan, Names, Of, Plan, TileKind, Trigger};
-use hasard_engine::world::ActorKind;
+use super::model::{GenerateKind, MapPlan, Names, Of, Plan, TileKind, Trigger, When, Zone};
+use hasard_engine::world::{ActorFlags, ActorKind};
 
 /// Warns of what happens in none of the settings.
 pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
     let Some(first) = plans.first() else { return };
     for (index, when) in first.whens.iter().enumerate() {
         let possible =
-            |plan: &Plan| plan.whens.get(index).is_some_and(|when| can_happen(plan, when.trigger));
+            |plan: &Plan| plan.whens.get(index).is_some_and(|when| can_happen(plan, when));
         if !plans.iter().any(possible) {
             mistakes
-                .warn(when.at, format!("this never happens: {}", why(first, names, when.trigger)));
+                .warn(when.at, format!("this never happens: {}", why(first, names, when)));
         }
     }
     warn_of_conditions(plans, names, mistakes);
@@ -30,6 +30,10 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
             0,
             "no tile is a start: the agent stands in the south-west; draw an @, or write [player] in = \"free\"",
         );
+    }
+    for idle in first.idle.iter().filter(|idle| plans.iter().all(|plan| plan.idle.contains(idle))) {
+        let (field, instead) = (&idle.field, idle.instead);
+        mistakes.warn(idle.at, format!("`{field}` has no effect here: it is for {instead}"));
     }
     warn_of_low_ceilings(plans, mistakes);
     for (index, spawn) in first.spawns.iter().enumerate() {
@@ -62,13 +66,31 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
     if !plans.iter().any(|plan| plan.whens.iter().any(|when| when.reward != 0.0)) {
         mistakes.warn(0, "no [[when]] gives a reward: there is nothing to learn");
     }
+    warn_of_costs(plans, names, mistakes);
+}
+
+/// Warns of cost terms that stay 0, and of a budget that nothing takes from.
+fn warn_of_costs(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
+    let whens = || plans.iter().flat_map(|plan| &plan.whens);
     for (index, term) in names.terms.iter().enumerate() {
-        let charged = |plan: &Plan| {
-            plan.whens.iter().any(|when| when.costs.iter().any(|(of, _)| usize::from(*of) == index))
-        };
-        if !plans.iter().any(charged) {
-            mistakes.warn(0, format!("cost term {} is charged by no [[when]]", term.name));
+        let mut amounts = whens()
+            .flat_map(|when| &when.costs)
+            .filter(|(of, _)| usize::from(*of) == index)
+            .map(|(_, amount)| *amount)
+            .peekable();
+        let name = &term.name;
+        if amounts.peek().is_none() {
+            mistakes.warn(0, format!("cost term {name} is charged by no [[when]]"));
+        } else if amounts.all(|amount| amount == 0.0) {
+            mistakes.warn(0, format!("cost term {name} is always 0: that is what [[when]] charges"));
         }
+    }
+    let budget = plans.iter().map(|plan| plan.budget).fold(0.0, f64::max);
+    if names.terms.is_empty() && budget > 0.0 {
+        mistakes.warn(
+            0,
+            format!("no [[when]] charges a cost: every episode keeps the budget of {budget}"),
+        );
     }
 }
 
@@ -131,16 +153,21 @@ fn warn_of_conditions(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
 }
 
 /// Whether something of a plan sets a rule off.
-fn can_happen(plan: &Plan, trigger: Trigger) -> bool {
+fn can_happen(plan: &Plan, when: &When) -> bool {
+    when.zone.is_none_or(|zone| is_somewhere(plan, zone)) && can_occur(plan, when.trigger)
+}
+
+fn can_occur(plan: &Plan, trigger: Trigger) -> bool {
     match trigger {
-        Trigger::Pickup(of) | Trigger::Kill(of) | Trigger::Hit(of) | Trigger::Near { of, .. } => {
-            appears(plan, of)
-        }
+        Trigger::Pickup(of) => appears(plan, of, can_be_taken),
+        Trigger::Kill(of) | Trigger::Hit(of) => appears(plan, of, can_be_shot),
+        Trigger::Near { of, .. } => appears(plan, of, |_| true),
         Trigger::Enter(zone) | Trigger::Leave(zone) | Trigger::In(zone) => is_somewhere(plan, zone),
         Trigger::Damage { kinds: 0, zones } => harmful(plan, zones),
         Trigger::Jump => presses(plan, "JUMP"),
         Trigger::Use => presses(plan, "USE"),
-        Trigger::Shot => presses(plan, "ATTACK"),
+        Trigger::Shot => presses(plan, "ATTACK") && is_armed(plan),
+        Trigger::Timer { first, .. } => first <= plan.tics,
         Trigger::Counter { counter, .. } => {
             let counts = |(of, _): &(u8, i32)| *of == counter;
             plan.whens
@@ -151,13 +178,39 @@ fn can_happen(plan: &Plan, trigger: Trigger) -> bool {
     }
 }
 
-fn why(plan: &Plan, names: &Names, trigger: Trigger) -> String {
-    let zone =
-        |zone: u8| plan.zones.get(usize::from(zone)).map_or("", |zone| &zone.name).to_string();
-    match trigger {
-        Trigger::Enter(of) | Trigger::Leave(of) | Trigger::In(of) => {
-            format!("no tile is of zone {}", zone(of))
+fn can_be_taken(kind: ActorKind) -> bool {
+    kind.info().flags.any(ActorFlags::ITEM)
+}
+
+fn can_be_shot(kind: ActorKind) -> bool {
+    kind.info().flags.any(ActorFlags::SHOOTABLE)
+}
+
+/// Whether the agent has a weapon, or can come by one.
+fn is_armed(plan: &Plan) -> bool {
+    let all = Of { kinds: u128::MAX, spawns: 0 };
+    !plan.player.weapons.is_empty() || appears(plan, all, |kind| kind.weapon().is_some())
+}
+
+fn why(plan: &Plan, names: &Names, when: &When) -> String {
+    let nowhere = |zone: u8| match plan.zones.get(usize::from(zone)) {
+        Some(Zone { name, area: Some(_), .. }) => {
+            format!("zone {name} is a rectangle without ground; the map's south-west is [0, 0]")
         }
+        zone => format!("no tile is of zone {}", zone.map_or("", |zone| &zone.name)),
+    };
+    if let Some(zone) = when.zone.filter(|zone| !is_somewhere(plan, *zone)) {
+        return nowhere(zone);
+    }
+    let unable = |of: Of, able: fn(ActorKind) -> bool, what: &str| {
+        if appears(plan, of, |_| true) && !appears(plan, of, able) {
+            return format!("{what}; name another in `of`");
+        }
+        "no such thing ever appears; put one down with [[spawn]] or the legend's `thing`"
+            .to_string()
+    };
+    match when.trigger {
+        Trigger::Enter(of) | Trigger::Leave(of) | Trigger::In(of) => nowhere(of),
         Trigger::Damage { .. } => {
             "no floor of that zone does damage; give its letter damage = { points = 1, every = 4 }"
                 .to_string()
@@ -170,41 +223,51 @@ fn why(plan: &Plan, names: &Names, trigger: Trigger) -> String {
         }
         Trigger::Jump => "no action is JUMP".to_string(),
         Trigger::Use => "no action is USE".to_string(),
+        Trigger::Shot if presses(plan, "ATTACK") => {
+            "the agent has no weapon; write [player] weapons = [\"Pistol\"]".to_string()
+        }
         Trigger::Shot => "no action is ATTACK".to_string(),
-        _ => "no such thing ever appears; put one down with [[spawn]] or the legend's `thing`"
-            .to_string(),
+        Trigger::Timer { first, .. } => {
+            format!("its first time is tic {first}, and an episode has {}", plan.tics)
+        }
+        Trigger::Pickup(of) => unable(of, can_be_taken, "nobody can pick up such a thing"),
+        Trigger::Kill(of) | Trigger::Hit(of) => {
+            unable(of, can_be_shot, "nobody can shoot such a thing")
+        }
+        _ => unable(Of::default(), |_| true, ""),
     }
 }
 
-/// Whether any of some things ever is in the world.
-fn appears(plan: &Plan, of: Of) -> bool {
-    let asked = |kind: ActorKind| of.kinds >> (kind as u32) & 1 == 1;
+/// Whether any of some things that are `able` ever is in the world.
+fn appears(plan: &Plan, of: Of, able: fn(ActorKind) -> bool) -> bool {
+    let asked = |kind: ActorKind| of.kinds >> (kind as u32) & 1 == 1 && able(kind);
     let spawned = plan.spawns.iter().enumerate().any(|(index, spawn)| {
         let called = plan
             .whens
             .iter()
             .any(|when| when.spawn.iter().any(|named| usize::from(*named) == index));
         let there = spawn.count > 0 || spawn.every > 0 || called;
-        there && (of.spawns >> index & 1 == 1 || spawn.kinds.iter().any(|(kind, _)| asked(*kind)))
+        let named = of.spawns >> index & 1 == 1;
+        there && spawn.kinds.iter().any(|(kind, _)| asked(*kind) || named && able(*kind))
     });
     let drawn = match &plan.map {
         MapPlan::Tiles(tiles) => {
             tiles.kinds.iter().filter(|kind| !kind.rock).filter_map(|kind| kind.thing).any(asked)
         }
-        MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => of.kinds != 0,
+        // What stands in it is not looked up.
+        MapPlan::BuiltIn(..) | MapPlan::Drawn(_) => ActorKind::all().any(asked),
     };
     spawned || drawn
 }
 
 fn is_somewhere(plan: &Plan, zone: u8) -> bool {
     let own = &plan.zones[usize::from(zone)];
-    match &plan.map {
-        MapPlan::Tiles(tiles) if own.area.is_none() && own.tags.is_none() => {
-            tiles.tiles.iter().any(|tile| {
-                let kind = &tiles.kinds[usize::from(*tile)];
-                kind.zone == Some(zone) && !kind.rock
-            })
-        }
+    match (&plan.map, own.area) {
+        (MapPlan::Tiles(tiles), Some(area)) => tiles.has_ground_in(area),
+        (MapPlan::Tiles(tiles), None) if own.tags.is_none() => tiles.tiles.iter().any(|tile| {
+            let kind = &tiles.kinds[usize::from(*tile)];
+            kind.zone == Some(zone) && !kind.rock
+        }),
         _ => true,
     }
 }
@@ -229,3 +292,6 @@ fn harmful(plan: &Plan, zones: u32) -> bool {
 fn presses(plan: &Plan, button: &str) -> bool {
     plan.actions.iter().flatten().any(|name| *name == button)
 }
+
+#[cfg(test)]
+mod tests;

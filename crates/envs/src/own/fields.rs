@@ -49,7 +49,11 @@ impl<'n> Fields<'n> {
         match node.value {
             Value::Whole(number) if (from..=to).contains(&number) => Some(number),
             _ => {
-                mistakes.add(node.at, format!("{key} must be a whole number from {from} to {to}"));
+                let given = node.other_than_a_number();
+                mistakes.add(
+                    node.at,
+                    format!("{key} must be a whole number from {from} to {to}{given}"),
+                );
                 None
             }
         }
@@ -66,7 +70,8 @@ impl<'n> Fields<'n> {
         let node = self.node(key)?;
         let number = number(node).filter(|number| (from..=to).contains(number));
         if number.is_none() {
-            mistakes.add(node.at, format!("{key} must be a number from {from} to {to}"));
+            let given = node.other_than_a_number();
+            mistakes.add(node.at, format!("{key} must be a number from {from} to {to}{given}"));
         }
         number
     }
@@ -77,7 +82,8 @@ impl<'n> Fields<'n> {
         match node.value {
             Value::Bool(value) => value,
             _ => {
-                mistakes.add(node.at, format!("{key} must be true or false"));
+                mistakes
+                    .add(node.at, format!("{key} must be true or false, not {}", node.what()));
                 false
             }
         }

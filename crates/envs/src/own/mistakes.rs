@@ -175,16 +175,25 @@ pub(super) fn unknown<'a>(
     known: impl IntoIterator<Item = &'a str>,
 ) -> String {
     let known: Vec<&str> = known.into_iter().collect();
-    let upper: String = word.chars().take(24).collect::<String>().to_uppercase();
-    let nearest = known.iter().min_by_key(|known| edit_distance(&upper, &known.to_uppercase()));
-    let near = nearest.filter(|known| edit_distance(&upper, &known.to_uppercase()) <= 3);
+    let near = nearest(word, &known);
     let word = excerpt(word);
     match (near, known.len()) {
         (Some(near), 9..) => format!("{what} `{word}` is unknown; the nearest is `{near}`"),
-        (_, 0) => format!("{what} `{word}` is unknown; there is none"),
+        (_, 0) => format!("{what} `{word}` is unknown: the file names none"),
         (_, ..9) => format!("{what} `{word}` is unknown; write one of {}", known.join(", ")),
         _ => format!("{what} `{word}` is unknown; write one of {}, ...", known[..8].join(", ")),
     }
+}
+
+/// The word that was probably meant: one letter in three may be wrong, or the end left out.
+fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let upper: String = word.chars().take(24).collect::<String>().to_uppercase();
+    let distance = |known: &&&str| edit_distance(&upper, &known.to_uppercase());
+    let near = known.iter().min_by_key(distance);
+    let near = near.filter(|known| distance(known) <= (upper.chars().count() / 3).min(3));
+    let longer =
+        || known.iter().find(|known| upper.len() > 2 && known.to_uppercase().starts_with(&upper));
+    near.or_else(longer).copied()
 }
 
 #[cfg(test)]

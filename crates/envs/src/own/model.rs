@@ -34,6 +34,8 @@ pub(super) struct Plan {
     pub tics: u32,
     pub actions: Vec<Vec<&'static str>>,
     pub map: MapPlan,
+    /// What `[map]` says that its kind of map does not ask for.
+    pub idle: Vec<Idle>,
     pub zones: Vec<Zone>,
     pub player: PlayerPlan,
     pub spawns: Vec<Spawn>,
@@ -42,6 +44,15 @@ pub(super) struct Plan {
     /// Cost terms whose amounts end the episode, a bit each.
     pub end_on: u32,
     pub green_goggles: bool,
+}
+
+/// A field of a map without effect.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) struct Idle {
+    pub field: String,
+    pub at: usize,
+    /// Where it has one.
+    pub instead: &'static str,
 }
 
 /// Where the world comes from.

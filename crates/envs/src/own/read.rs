@@ -71,6 +71,7 @@ pub(super) fn plan(document: &Node, names: &mut Names, mistakes: &mut Mistakes) 
 
     let mut zones = zones(section("zones"), mistakes);
     let map = read_map::map(document.get("map").map(|entry| &entry.node), &mut zones, mistakes);
+    let idle = document.get("map").map_or(Vec::new(), |map| read_map::idle(&map.node));
     terms(section("costs"), names, mistakes);
     let player = player(section("player"), &zones, mistakes);
     let mut whole = Fields::of(document, "the file", mistakes);
@@ -97,6 +98,7 @@ pub(super) fn plan(document: &Node, names: &mut Names, mistakes: &mut Mistakes) 
         tics,
         actions,
         map: map.unwrap_or(MapPlan::BuiltIn(crate::Scenario::RemedyRush, 1)),
+        idle,
         zones,
         player,
         spawns,

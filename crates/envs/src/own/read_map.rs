@@ -3,7 +3,7 @@
 
 use super::fields::{Fields, own_name, wholes};
 use super::mistakes::{Mistakes, excerpt, unknown};
-use super::model::{MOST_ZONES, MapPlan, TileKind, Zone};
+use super::model::{Idle, MOST_ZONES, MapPlan, TileKind, Zone};
 use super::read_tiles::{drawn, generated};
 use super::tree::{Node, Value};
 use super::{map_file, textures};
@@ -84,6 +84,40 @@ pub(super) fn map(
         (None, None) => None,
     };
     tiles.map(MapPlan::Tiles)
+}
+
+/// What a map says that has no effect, since it is of another kind.
+pub(super) fn idle(map: &Node) -> Vec<Idle> {
+    let Some(source) = SOURCES.into_iter().find(|source| map.get(source).is_some()) else {
+        return Vec::new();
+    };
+    let of_tiles = ("`ascii` and [map.generate]", &["ascii", "generate"][..]);
+    let of_built_in = ("`builtin`", &["builtin"][..]);
+    let mut found = Vec::new();
+    for (key, (instead, sources)) in
+        [("tile", of_tiles), ("legend", of_tiles), ("level", of_built_in)]
+    {
+        if let Some(entry) = map.get(key).filter(|_| !sources.contains(&source)) {
+            found.push(Idle { field: key.to_string(), at: entry.at, instead });
+        }
+    }
+    if let ("generate", Some(Value::Table(letters))) =
+        (source, map.get("legend").map(|legend| &legend.node.value))
+    {
+        let liked = |key: &str| {
+            letters.iter().any(|other| {
+                other.node.get("like").and_then(|like| like.node.text()) == Some(key)
+            })
+        };
+        let instead = "maps that are drawn; one that is made anew is of the letters . and #";
+        let others = letters.iter().filter(|one| !matches!(&*one.key, "." | "#"));
+        found.extend(others.filter(|one| !liked(&one.key)).map(|one| Idle {
+            field: one.key.clone(),
+            at: one.at,
+            instead,
+        }));
+    }
+    found
 }
 
 /// What a letter is that the legend does not say otherwise of.

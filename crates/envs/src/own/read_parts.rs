@@ -1,7 +1,7 @@
 //! Reads what several sections have: zones, places, heights, cost terms, amounts.
 
 use super::fields::{Fields, number, own_name, wholes};
-use super::mistakes::{Mistakes, unknown};
+use super::mistakes::{Mistakes, excerpt, unknown};
 use super::model::{Height, Names, Place, Term, Zone};
 use super::tree::{Node, Value};
 use crate::scenarios::common::outcome::MOST_TERMS;
@@ -12,7 +12,13 @@ pub(super) const FARTHEST: i64 = 16_000;
 /// The number of a zone.
 pub(super) fn zone(name: &str, at: usize, zones: &[Zone], mistakes: &mut Mistakes) -> Option<u8> {
     let found = zones.iter().position(|zone| zone.name == name);
-    if found.is_none() {
+    if found.is_none() && zones.is_empty() {
+        let name = excerpt(name);
+        mistakes.add(
+            at,
+            format!("zone `{name}` is unknown; give its letter of the legend zone = \"{name}\""),
+        );
+    } else if found.is_none() {
         mistakes.add(at, unknown("zone", name, zones.iter().map(|zone| &*zone.name)));
     }
     found.map(|index| index as u8)

@@ -195,6 +195,10 @@ fn levels(root: &Node, mistakes: &mut Mistakes) -> u8 {
             _ => mistakes.add(level.at, format!("levels are numbered 1 to {MOST_LEVELS}")),
         }
     }
+    let left_out = (2..most).find(|number| entry.node.get(&number.to_string()).is_none());
+    if let Some(number) = left_out {
+        mistakes.warn(entry.at, format!("there is no [levels.{number}]: it is as level 1"));
+    }
     most
 }
 

@@ -22,6 +22,14 @@ impl Tiles {
         [west, south, west + self.side, south + self.side]
     }
 
+    /// Whether any ground is within west, south, east, north.
+    pub fn has_ground_in(&self, [west, south, east, north]: [i32; 4]) -> bool {
+        self.ground().any(|(column, row, _)| {
+            let [left, lower, right, upper] = self.area(column, row);
+            west < right && left < east && south < upper && lower < north
+        })
+    }
+
     /// Every tile that is no rock, from the south-west.
     fn ground(&self) -> impl Iterator<Item = (usize, usize, &TileKind)> {
         let all = (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (column, row)));

@@ -127,6 +127,15 @@ impl Node {
         }
     }
 
+    /// What it is where a number is asked for and it is none: `, not a text`; nothing of a number.
+    pub fn other_than_a_number(&self) -> String {
+        match self.value {
+            Value::Whole(_) | Value::Number(_) => String::new(),
+            Value::Text(_) => ", without quotes".to_string(),
+            _ => format!(", not {}", self.what()),
+        }
+    }
+
     /// The entry of a table.
     pub fn get(&self, key: &str) -> Option<&Entry> {
         let Value::Table(entries) = &self.value else { return None };

@@ -11,6 +11,7 @@ use super::lane::Lane;
 use super::lane_state::LaneState;
 use super::mixed::{self, MixedTask, Mixture};
 use super::options::{Autoreset, VecOptions};
+use crate::machine_memory::{check as check_memory, machine_memory};
 use crate::{ActionSpace, Batch, CostTerm, Env, EnvError, EnvOptions, Environment};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
@@ -131,6 +132,9 @@ impl VecEnv {
         let mut lanes: Vec<Lane> = Vec::with_capacity(options.lanes);
         for index in 0..options.lanes {
             let env = make(index)?;
+            if index == 0 {
+                check_memory(options.lanes, env.observation_shape(), machine_memory())?;
+            }
             alike(lanes.first().map_or(&*env, Lane::env), &*env, index)?;
             let number = options.first_lane.wrapping_add(index as u64);
             lanes.push(Lane::new(index, number, options, env));

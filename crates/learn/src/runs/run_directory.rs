@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use hasard_media::files::{NO_FILE, is_special};
+use hasard_media::files::{NO_FILE, is_special, what_lies_at};
 use hasard_media::shell::quote;
 use serde_json::{Value, json};
 
@@ -320,13 +320,17 @@ pub(super) fn spoiled_selection(error: &LearnError) -> LearnError {
 /// The settings of the run in a directory.
 pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
     let file = path.join("config.json");
-    if !path.exists() {
+    let is_absent = |place: &Path| {
+        let there = what_lies_at(place).map_err(|error| LearnError::Config(error.to_string()));
+        there.map(|kind| kind.is_none())
+    };
+    if is_absent(path)? {
         return Err(LearnError::content(
             path,
             "nothing is here; give the directory of `hasard train --out` or a file of `hasard export-agent`",
         ));
     }
-    if !file.exists() {
+    if is_absent(&file)? {
         return Err(LearnError::content(
             path,
             "no run is here (config.json is missing); give the directory of `hasard train --out`",

@@ -1,8 +1,7 @@
 //! Whether the pictures of a rollout fit into the machine's memory: asked before anything is made, since
 //! the system ends a program that runs out of memory without a word.
 
-use hasard_envs::EnvOptions;
-use sysinfo::{MemoryRefreshKind, RefreshKind, System};
+use hasard_envs::{EnvOptions, machine_memory};
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
@@ -11,11 +10,8 @@ use crate::error::LearnError;
 /// of processes that this one is in. `lanes` are those that are played here.
 pub fn check(config: &TrainConfig, lanes: usize) -> Result<(), LearnError> {
     let options = config.env.options()?;
-    let kind = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
-    let system = System::new_with_specifics(kind);
-    let whole = system.cgroup_limits().map_or(system.total_memory(), |limits| limits.total_memory);
     // A system that does not say how much it has refuses nothing.
-    if whole == 0 { Ok(()) } else { fits(config, lanes, picture(&options), whole) }
+    machine_memory().map_or(Ok(()), |memory| fits(config, lanes, picture(&options), memory))
 }
 
 /// Bytes of one observation.

@@ -1,7 +1,9 @@
 //! Finding runs and recorded episodes below the folders that a user names.
 
-use super::{EpisodeResult, FRAME_SKIP, Run, Warning, read_episode_lines, read_text, sorted_files};
+use super::{EpisodeResult, FRAME_SKIP, Run, Warning};
+use super::{read_episode_lines, read_text, sorted_files, warning_of};
 use hasard_media::episode::EpisodeFile;
+use hasard_media::files::{NO_FILE, what_lies_at};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -38,6 +40,8 @@ pub struct PlayerKey {
 pub struct Found {
     /// Training runs, in the order of their paths.
     pub runs: Vec<Run>,
+    /// Number of run directories that are damaged beyond reading; a warning names each.
+    pub damaged: usize,
     /// Episodes of humans and other players.
     pub players: BTreeMap<PlayerKey, Vec<EpisodeResult>>,
     /// What was passed over.
@@ -57,12 +61,19 @@ impl Found {
 /// the player's.
 ///
 /// # Errors
-/// When a named path does not exist, or nothing at all is found.
+/// When a named path does not exist or cannot be read, when nothing at all is found, or runs of which
+/// none can be read.
 pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
     let mut found = Found::default();
     let (mut seen, mut empty) = (Seen::new(), Vec::new());
     for path in paths {
-        if path.is_dir() {
+        let Some(kind) = what_lies_at(path).map_err(|error| error.to_string())? else {
+            return Err(format!(
+                "{}: no such file or folder; name the run directories to report on",
+                path.display()
+            ));
+        };
+        if kind.is_dir() {
             let known = (found.count(), seen.len());
             look(path, 0, &mut found, &mut seen);
             // A folder that another one holds was looked at with it.
@@ -70,7 +81,7 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
                 let problem = "no run and no episode is here".to_owned();
                 empty.push(Warning { path: path.clone(), line: 0, problem });
             }
-        } else if path.is_file() {
+        } else if kind.is_file() {
             if !is_new(path, &mut seen) {
                 continue;
             }
@@ -85,23 +96,27 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
                 }
             }
         } else {
-            return Err(format!(
-                "{}: no such file or folder; name the run directories to report on",
-                path.display()
-            ));
+            return Err(format!("{}: {NO_FILE}", path.display()));
         }
     }
     found.runs.sort_by(|a, b| a.path.cmp(&b.path));
     found.warnings.sort();
     found.warnings.dedup();
-    if found.runs.is_empty() && found.players.is_empty() {
+    let nothing = found.runs.is_empty() && found.players.is_empty();
+    if nothing || (found.runs.is_empty() && found.damaged > 0) {
         let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+        let names = names.join(" ");
         let first =
             found.warnings.first().map_or_else(String::new, |warning| format!(" ({warning})"));
-        return Err(format!(
-            "no run directory (a folder with config.json) and no episode below {}{first}; name the folder that `hasard train --out` wrote",
-            names.join(" ")
-        ));
+        return Err(if found.damaged > 0 {
+            format!(
+                "no run below {names} can be read{first}; name whole ones, or episodes by their files"
+            )
+        } else {
+            format!(
+                "no run directory (a folder with config.json) and no episode below {names}{first}; name the folder that `hasard train --out` wrote"
+            )
+        });
     }
     found.warnings.append(&mut empty);
     Ok(found)
@@ -123,15 +138,29 @@ fn look(folder: &Path, depth: usize, found: &mut Found, seen: &mut Seen) {
     if !is_new(folder, seen) {
         return;
     }
-    if folder.join("config.json").is_file() {
+    let settings = folder.join("config.json");
+    // Whatever it is makes a run, if a damaged one: what lies beside it is no play of anybody's.
+    let is_run = match what_lies_at(&settings) {
+        _ if settings.is_symlink() => true,
+        Ok(kind) => kind.is_some(),
+        Err(error) => return found.warnings.push(warning_of(&settings, &error)),
+    };
+    if is_run {
         match Run::read(folder, &mut found.warnings) {
             Ok(run) => found.runs.extend(run.by_task()),
-            Err(warning) => found.warnings.push(warning),
+            Err(warning) => {
+                found.damaged += 1;
+                found.warnings.push(warning);
+            }
         }
         return;
     }
     if depth == MAX_DEPTH {
         return;
+    }
+    if let Err(error) = std::fs::read_dir(folder) {
+        let problem = format!("cannot be listed: {error}; passed over");
+        return found.warnings.push(Warning { path: folder.to_owned(), line: 0, problem });
     }
     for path in sorted_files(folder) {
         if path.file_name().is_some_and(|name| name == TRASH) {

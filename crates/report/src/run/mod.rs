@@ -221,13 +221,16 @@ pub(crate) fn sorted_files(folder: &Path) -> Vec<PathBuf> {
 /// Reads a text file; bytes that are no UTF-8 (a line cut or overwritten) become replacement
 /// characters and their line fails to parse like any other damaged one.
 pub(crate) fn read_text(path: &Path) -> Result<String, Warning> {
-    let bytes = hasard_media::files::read_limited(path, TEXT_LIMIT).map_err(|error| {
-        let text = error.to_string();
-        let problem =
-            text.strip_prefix(&format!("{}: ", path.display())).unwrap_or(&text).to_owned();
-        Warning { path: path.to_owned(), line: 0, problem }
-    })?;
+    let bytes = hasard_media::files::read_limited(path, TEXT_LIMIT)
+        .map_err(|error| warning_of(path, &error))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// What is wrong with a file, without its name, which a warning has apart.
+fn warning_of(path: &Path, error: &hasard_media::MediaError) -> Warning {
+    let text = error.to_string();
+    let problem = text.strip_prefix(&format!("{}: ", path.display())).unwrap_or(&text).to_owned();
+    Warning { path: path.to_owned(), line: 0, problem }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! `hasard sweep`: many trainings.
 
+mod looks;
 mod options;
 pub(super) mod plan;
 mod progress;
@@ -47,6 +48,7 @@ pub fn run(args: &SweepArgs) -> Outcome {
     let named = |error| Failure::bad(format!("{}: {error}", args.what.to_string_lossy()));
     let mut jobs = sweep.jobs().map_err(named)?;
     let mut configs = settings(&jobs)?;
+    looks::check(args, &configs)?;
     if let Some(scale) = args.scale {
         for (job, config) in jobs.iter_mut().zip(&configs) {
             rescale::rescale(job, config, scale)?;

@@ -8,14 +8,22 @@ use hasard_learn::networks::device::ComputeDevice;
 use hasard_learn::runs::measure::measure;
 use hasard_sweep::{Job, State};
 use serde_json::{Value, json};
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
 
 /// Seconds of measuring, shared by the kinds of runs; and most kinds that are measured, evenly
 /// chosen.
 const SECONDS: f64 = 6.0;
 const MOST_KINDS: usize = 6;
 
-/// Steps of a rollout that is measured, if the run names no length to learn through.
+/// Once it has taken so long no further kind is measured: on a slow or busy machine each takes
+/// longer than its share, for an update is not cut short.
+const PATIENCE: Duration = Duration::from_secs(15);
+
+/// Samples of an update above which rollouts are shortened to be measured; and steps of such a
+/// rollout, if the run names no length to learn through.
+const MANY_SAMPLES: usize = 8192;
 const SHORT: usize = 32;
 
 /// What is still to do.
@@ -35,6 +43,10 @@ pub struct Plan {
     pub rate: Option<f64>,
     /// Bytes that all runs keep when they are finished.
     pub bytes: Option<u64>,
+    /// Kinds of runs that are left, and those of them that were measured; the others are taken for
+    /// the mean of these.
+    pub kinds: usize,
+    pub measured: usize,
 }
 
 /// The kind of a run as far as its speed goes.
@@ -88,27 +100,22 @@ impl Plan {
         if !measures || kinds.is_empty() {
             return Ok(plan);
         }
-        let stride = kinds.len().div_ceil(MOST_KINDS);
-        let measured = kinds.len().div_ceil(stride);
-        let (mut rates, mut sizes) = (BTreeMap::new(), BTreeMap::new());
-        for (name, (config, _)) in kinds.iter().step_by(stride) {
-            let mut config = (*config).clone();
+        let measured = measured_within(PATIENCE, &kinds, |config, seconds| {
+            let mut config = config.clone();
             (config.learning.threads, config.sampling.samplers) = (threads, threads);
             let options = crate::settings::trained_options(&config.env, Elsewhere::default())?;
-            let (rate, bytes) = tried(&config, &options, SECONDS / measured as f64)?;
-            rates.insert(name.clone(), rate);
-            sizes.insert(name.clone(), bytes);
-        }
-        let mean = rates.values().sum::<f64>() / rates.len() as f64;
-        let size = sizes.values().sum::<u64>() / sizes.len() as u64;
-        let seconds: f64 = kinds
-            .iter()
-            .map(|(name, (_, frames))| *frames as f64 / rates.get(name).unwrap_or(&mean))
-            .sum();
+            tried(&config, &options, seconds)
+        })?;
+        let count = measured.len();
+        let mean = measured.values().map(|(rate, _)| rate).sum::<f64>() / count as f64;
+        let size = measured.values().map(|(_, bytes)| bytes).sum::<u64>() / count as u64;
+        let of_kind = |name: &String| measured.get(name).copied().unwrap_or((mean, size));
+        let seconds: f64 =
+            kinds.iter().map(|(name, (_, frames))| *frames as f64 / of_kind(name).0).sum();
         plan.rate = Some(mean);
         plan.hours = Some(seconds / at_once.min(cores) as f64 / 3600.0);
-        plan.bytes =
-            Some(jobs.iter().map(|(_, config)| sizes.get(&kind(config)).unwrap_or(&size)).sum());
+        plan.bytes = Some(jobs.iter().map(|(_, config)| of_kind(&kind(config)).1).sum());
+        (plan.kinds, plan.measured) = (kinds.len(), count);
         Ok(plan)
     }
 
@@ -128,6 +135,12 @@ impl Plan {
         if let Some(bytes) = self.bytes {
             text += &format!("; {} on disk", size(bytes));
         }
+        if self.kinds > 1 {
+            text += &format!("; measured on {} of {} kinds of runs", self.measured, self.kinds);
+            if self.measured < self.kinds {
+                text += ", the others taken for their mean";
+            }
+        }
         text
     }
 
@@ -141,8 +154,31 @@ impl Plan {
             "hours": self.hours,
             "frames_per_second": self.rate,
             "bytes": self.bytes,
+            "kinds": self.kinds,
+            "kinds_measured": self.measured,
         } })
     }
+}
+
+/// Measures at most [`MOST_KINDS`] kinds, evenly chosen, until `patience` is at its end, and the
+/// first in any case: that of most frames. Gives the rate and the bytes of each.
+fn measured_within(
+    patience: Duration,
+    kinds: &BTreeMap<String, (&TrainConfig, u64)>,
+    mut measure: impl FnMut(&TrainConfig, f64) -> Result<(f64, u64), Failure>,
+) -> Result<BTreeMap<String, (f64, u64)>, Failure> {
+    let stride = kinds.len().div_ceil(MOST_KINDS).max(1);
+    let mut chosen: Vec<_> = kinds.iter().step_by(stride).collect();
+    chosen.sort_by_key(|(_, (_, frames))| Reverse(*frames));
+    let (begun, seconds) = (Instant::now(), SECONDS / chosen.len() as f64);
+    let mut found = BTreeMap::new();
+    for (name, (config, _)) in chosen {
+        if !found.is_empty() && begun.elapsed() >= patience {
+            break;
+        }
+        found.insert(name.clone(), measure(config, seconds)?);
+    }
+    Ok(found)
 }
 
 /// Frames a second of a run's loop, measured for some seconds, and the bytes of its checkpoints.
@@ -156,11 +192,13 @@ fn tried(config: &TrainConfig, options: &EnvOptions, seconds: f64) -> Result<(f6
 }
 
 /// The same training with shorter rollouts, and as much work for a frame, where an update would
-/// take a core half a minute: those of the second order learn from 16,000 samples at once.
+/// take a core half a minute: those of the second order learn from 16,000 samples at once, and any
+/// other may be asked to.
 fn of_short_updates(config: &TrainConfig) -> TrainConfig {
     let mut config = config.clone();
     let (rollout, steps) = (config.sampling.rollout, config.learning.recurrence.unwrap_or(SHORT));
-    if config.algorithm.is_second_order() && steps < rollout {
+    let many = config.sampling.lanes * rollout > MANY_SAMPLES;
+    if (many || config.algorithm.is_second_order()) && steps < rollout {
         config.sampling.rollout = steps;
         let critic_steps = &mut config.algorithm_settings.critic_steps;
         *critic_steps = (*critic_steps * steps / rollout).max(1);
@@ -291,6 +329,30 @@ mod tests {
         assert_eq!(steps_a_sample(&short), steps_a_sample(&whole));
         let ppo = make(AlgorithmKind::PpoPid);
         assert_eq!(of_short_updates(&ppo), ppo);
+        let mut long = ppo;
+        long.sampling.rollout = 4096;
+        assert_eq!(of_short_updates(&long).sampling.rollout, SHORT);
+    }
+
+    /// A sweep of many kinds was measured for minutes before its plan was said.
+    #[test]
+    fn kinds_are_measured_once_each_while_there_is_time() {
+        let env = EnvConfig::new("RemedyRushLevel1-v0");
+        let config = TrainConfig::new(AlgorithmKind::Ppo, Preset::Quick, env).unwrap();
+        let kinds: BTreeMap<String, (&TrainConfig, u64)> =
+            (0..13).map(|number| (format!("{number:02}"), (&config, number))).collect();
+        let measured = |patience| {
+            let mut seconds = 0.0;
+            let found = measured_within(patience, &kinds, |_, share| {
+                seconds += share;
+                Ok((1.0, 2))
+            });
+            (found.unwrap().into_keys().collect::<Vec<_>>(), seconds)
+        };
+        let (all, seconds) = measured(Duration::MAX);
+        assert_eq!(all, ["00", "03", "06", "09", "12"]);
+        assert!(seconds <= SECONDS + 1e-9);
+        assert_eq!(measured(Duration::ZERO).0, ["12"], "the kind of most frames, without time");
     }
 
     #[test]
@@ -308,6 +370,16 @@ mod tests {
             line,
             "540 runs, 270 G frames; about 267 days here, at 11700 frames/s and with evaluations; 60.0 GB on disk"
         );
+        let some = Plan { kinds: 13, measured: 2, bytes: Some(3), ..plan.clone() };
+        assert!(
+            some.line().ends_with(
+                "; 1 MB on disk; measured on 2 of 13 kinds of runs, the others taken for their mean"
+            ),
+            "{}",
+            some.line()
+        );
+        let all = Plan { kinds: 2, measured: 2, ..plan.clone() }.line();
+        assert!(all.ends_with("; measured on 2 of 2 kinds of runs"), "{all}");
         let line = Plan { finished: 500, left: 20_000_000_000, hours: None, ..plan }.line();
         assert_eq!(line, "540 runs, 270 G frames; 500 finished, 20 G frames to go");
     }

@@ -3,6 +3,7 @@
 use super::plan::two_digits;
 use crate::args::{Cli, Command};
 use crate::commands::init_from::of_job;
+use crate::commands::kept_task::named as named_tasks;
 use crate::commands::train_settings::fresh;
 use crate::failure::Failure;
 use clap::error::ErrorKind;
@@ -23,7 +24,8 @@ pub fn settings(job: &Job) -> Result<TrainConfig, Failure> {
     let typed = Cli::command().try_get_matches_from(line).map_err(wrong)?;
     match (Cli::from_arg_matches(&typed).map_err(wrong)?.command, typed.subcommand()) {
         (Command::Train(args), Some((_, typed))) => {
-            let begun = fresh(&args, typed).and_then(|mut config| {
+            let begun = named_tasks(&args).and_then(|args| {
+                let mut config = fresh(&args, typed)?;
                 config.init_from = of_job(&args, &job.directory)?;
                 Ok(config)
             });

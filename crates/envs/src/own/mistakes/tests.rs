@@ -19,7 +19,7 @@ fn a_mistake_of_one_setting_names_it() {
         ("[hard]\nmap.legend.\"~\".zone = \"water\"\n", "--hard: "),
         ("[levels.2.hard]\nmap.legend.\"~\".zone = \"water\"\n", "level 2, --hard: "),
         ("[levels.1]\nmap.legend.\"~\".zone = \"water\"\n[levels.2]\n", "level 1: "),
-        ("[levels.1.hard]\nmap.legend.\"~\".zone = \"water\"\n[levels.3]\n", "level 1, --hard: "),
+        ("[levels.1.hard]\nmap.legend.\"~\".zone = \"water\"\n[levels.2]\n", "level 1, --hard: "),
         ("[hard]\nmap.legend.\"~\".zone = \"water\"\n[levels.2]\n", "--hard: "),
         (
             "[levels.2]\nmap.legend.\"~\".zone = \"water\"\n[levels.3]\nmap.legend.\"~\".zone = \"water\"\n",
@@ -35,4 +35,25 @@ fn a_mistake_of_one_setting_names_it() {
     let everywhere = listed("[[when]]\nevent = \"damage\"\nby = \"water\"\n[levels.2]\n");
     assert_eq!(everywhere.len(), 1, "{everywhere:?}");
     assert!(!everywhere[0].contains("level"), "{everywhere:?}");
+}
+
+/// A word that is far from all known ones names none of them; one that is cut short names the whole.
+#[test]
+fn only_a_word_that_is_near_is_called_the_nearest() {
+    let buttons = crate::spaces::action::BUTTONS.map(|(name, _)| name);
+    for (word, near) in [
+        ("FLY", None),
+        ("ATTAK", Some("ATTACK")),
+        ("attack", Some("ATTACK")),
+        ("TURN_LEF", Some("TURN_LEFT")),
+        ("MOVE_FORW", Some("MOVE_FORWARD")),
+        ("X", None),
+        ("", None),
+    ] {
+        let said = super::unknown("button", word, buttons);
+        match near {
+            Some(near) => assert!(said.ends_with(&format!("the nearest is `{near}`")), "{said}"),
+            None => assert!(said.contains("write one of"), "{said}"),
+        }
+    }
 }
