@@ -78,8 +78,9 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Trace(args) => commands::trace::run(&args),
         Command::Bench(args) => commands::bench::run(&args),
         Command::Render(args) => commands::render::run(&args),
-        Command::Train(args) => commands::kept_task::named(&args)
-            .and_then(|args| commands::train::run(&args, typed)),
+        Command::Train(args) => {
+            commands::kept_task::named(&args).and_then(|args| commands::train::run(&args, typed))
+        }
         Command::Eval(args) => commands::eval::run(&args),
         Command::Record(args) => commands::record::run(&args),
         Command::Highlights(args) => commands::highlights::run(&args),

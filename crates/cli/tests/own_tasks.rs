@@ -210,13 +210,15 @@ fn a_task_without_reward_says_so_before_it_is_played() {
     let folder = Folder::new("without-reward");
     folder.ok("new task");
     folder.replace("task.toml", "reward = 1.0\n", "reward = 0\n");
-    let said = "hasard: task.toml:1:1: warning: no [[when]] gives a reward: there is nothing to learn";
+    let said =
+        "hasard: task.toml:1:1: warning: no [[when]] gives a reward: there is nothing to learn";
     let train = format!("train task.toml --algo PPO --out run {SMALL}");
     for command in ["rollout task.toml --episodes 1", &train] {
         let (_, error) = folder.both(command);
         assert_eq!(error.matches(said).count(), 1, "{command}: {error}");
     }
-    let (_, quiet) = folder.both(&format!("train task.toml --algo PPO --quiet --out other {SMALL}"));
+    let (_, quiet) =
+        folder.both(&format!("train task.toml --algo PPO --quiet --out other {SMALL}"));
     assert!(!quiet.contains("warning"), "{quiet}");
 }
 

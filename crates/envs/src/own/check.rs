@@ -11,8 +11,7 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
         let possible =
             |plan: &Plan| plan.whens.get(index).is_some_and(|when| can_happen(plan, when));
         if !plans.iter().any(possible) {
-            mistakes
-                .warn(when.at, format!("this never happens: {}", why(first, names, when)));
+            mistakes.warn(when.at, format!("this never happens: {}", why(first, names, when)));
         }
     }
     warn_of_conditions(plans, names, mistakes);
@@ -82,7 +81,8 @@ fn warn_of_costs(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
         if amounts.peek().is_none() {
             mistakes.warn(0, format!("cost term {name} is charged by no [[when]]"));
         } else if amounts.all(|amount| amount == 0.0) {
-            mistakes.warn(0, format!("cost term {name} is always 0: that is what [[when]] charges"));
+            mistakes
+                .warn(0, format!("cost term {name} is always 0: that is what [[when]] charges"));
         }
     }
     let budget = plans.iter().map(|plan| plan.budget).fold(0.0, f64::max);

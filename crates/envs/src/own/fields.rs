@@ -82,8 +82,7 @@ impl<'n> Fields<'n> {
         match node.value {
             Value::Bool(value) => value,
             _ => {
-                mistakes
-                    .add(node.at, format!("{key} must be true or false, not {}", node.what()));
+                mistakes.add(node.at, format!("{key} must be true or false, not {}", node.what()));
                 false
             }
         }

@@ -105,9 +105,9 @@ pub(super) fn idle(map: &Node) -> Vec<Idle> {
         (source, map.get("legend").map(|legend| &legend.node.value))
     {
         let liked = |key: &str| {
-            letters.iter().any(|other| {
-                other.node.get("like").and_then(|like| like.node.text()) == Some(key)
-            })
+            letters
+                .iter()
+                .any(|other| other.node.get("like").and_then(|like| like.node.text()) == Some(key))
         };
         let instead = "maps that are drawn; one that is made anew is of the letters . and #";
         let others = letters.iter().filter(|one| !matches!(&*one.key, "." | "#"));

@@ -96,8 +96,7 @@ fn costs_that_stay_zero_and_a_budget_without_costs_are_warned_of() {
 
 #[test]
 fn what_a_map_does_not_ask_for_is_warned_of() {
-    let built_in =
-        "[scenario]\nname = \"T\"\n[map]\nbuiltin = \"RemedyRush\"\ntile = 32\nlegend.x.floor = 8\n";
+    let built_in = "[scenario]\nname = \"T\"\n[map]\nbuiltin = \"RemedyRush\"\ntile = 32\nlegend.x.floor = 8\n";
     assert!(warned_of(built_in, "`tile` has no effect here"));
     assert!(warned_of(built_in, "`legend` has no effect here"));
     assert!(warned_of(&corridor("").replace("[map]\n", "[map]\nlevel = 2\n"), "`level` has no"));
