@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 const REST: &str = r#"
 [scenario]
 name = "NAME"
-budget = 3
 actions = [["TURN_LEFT", "TURN_RIGHT"], ["MOVE_FORWARD"], ["SPEED"]]
 [player]
 in = [-320, 128, 352, 1024]
