@@ -78,9 +78,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Trace(args) => commands::trace::run(&args),
         Command::Bench(args) => commands::bench::run(&args),
         Command::Render(args) => commands::render::run(&args),
-        Command::Train(args) => {
-            commands::kept_task::named(&args).and_then(|args| commands::train::run(&args, typed))
-        }
+        Command::Train(args) => commands::train::run(&args, typed),
         Command::Eval(args) => commands::eval::run(&args),
         Command::Record(args) => commands::record::run(&args),
         Command::Highlights(args) => commands::highlights::run(&args),
@@ -120,8 +118,7 @@ pub fn train(
         parse(program.into_iter().chain(words)).map_err(|error| failure::usage_line(&error))?;
     let typed = matches.subcommand().map_or(&matches, |(_, typed)| typed);
     match cli.command {
-        Command::Train(args) => commands::kept_task::named(&args)
-            .and_then(|args| commands::train::begin(&args, typed))
+        Command::Train(args) => commands::train::begin(&args, typed)
             .and_then(|begun| begun.train(team, hooks))
             .map_err(Failure::line),
         _ => Err("these words are another command's".to_string()),

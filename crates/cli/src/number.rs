@@ -1,7 +1,7 @@
 //! Numbers and names as people write them.
 
 use hasard_envs::EnvId;
-use hasard_envs::own::{is_file, open};
+use hasard_envs::own::{is_file, open, path_and_level};
 
 /// The whole number that a text such as `2000000`, `2_000_000`, `2,000,000`, `2M`, `1.5M`, `400k`
 /// or `1e6` stands for.
@@ -109,16 +109,8 @@ pub fn env_id_of_run(text: &str) -> Result<String, String> {
 
 /// Whether a word names a scenario's file where none is.
 pub fn is_absent_file(word: &str) -> bool {
-    let (path, _) = file_and_level(word.trim());
+    let (path, _) = path_and_level(word.trim());
     is_file(path) && std::path::Path::new(path).try_exists().is_ok_and(|there| !there)
-}
-
-/// The path of `my_task.toml#2`, and its level.
-pub fn file_and_level(word: &str) -> (&str, Option<&str>) {
-    match word.rsplit_once('#') {
-        Some((path, level)) if is_file(path) => (path, Some(level)),
-        _ => (word, None),
-    }
 }
 
 #[cfg(test)]

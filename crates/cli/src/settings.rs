@@ -3,7 +3,7 @@
 use crate::args::{EnvArgs, LooksArgs, Observation, ObservationArgs, Rules, Size, View};
 use crate::failure::Failure;
 use hasard_envs::{
-    EnvError, EnvId, EnvOptions, FrameSize, ObservationKind, Policy, RuleSet, Scenario, own,
+    EnvError, EnvId, EnvOptions, FrameSize, ObservationKind, Policy, RuleSet, Scenario,
 };
 use hasard_learn::config::EnvConfig;
 use hasard_learn::config::place::kept;
@@ -33,8 +33,8 @@ const MOST_WARNINGS: usize = 3;
 pub fn warn_of_task(scenario: Scenario) {
     let Some(file) = scenario.file else { return };
     // What a map leaves out is said of each task that is played.
-    let mut warnings = own::check(file.text).mistakes;
-    warnings.retain(|warning| !warning.text.starts_with("left out: "));
+    let is_new = |warning: &&&str| !warning.contains(": warning: left out: ");
+    let warnings: Vec<_> = file.warnings.iter().filter(is_new).collect();
     let path = file.path;
     for warning in warnings.iter().take(MOST_WARNINGS) {
         note!("hasard: {path}:{warning}");

@@ -20,14 +20,14 @@ pub(crate) fn check(
     observation: [usize; 3],
     memory: Option<u64>,
 ) -> Result<(), EnvError> {
-    // At most 2^16 lanes and 2^29 bytes: no overflow.
-    let each = observation.iter().product::<usize>().max(1) as u64;
-    let most = memory.map_or(u64::MAX, |memory| memory / each);
+    // A system that does not say how much it has refuses nothing.
+    let Some(memory) = memory else { return Ok(()) };
+    let most = memory / observation.iter().product::<usize>().max(1) as u64;
     if lanes as u64 <= most {
         return Ok(());
     }
     let [first, second, third] = observation;
-    let gigabytes = memory.unwrap_or_default() as f64 / 1e9;
+    let gigabytes = memory as f64 / 1e9;
     Err(EnvError::Option {
         option: "the number of environments",
         given: lanes.to_string(),

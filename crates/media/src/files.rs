@@ -286,7 +286,7 @@ mod tests {
         }
     }
 
-    /// A link to itself: the system does not say what lies there, to whomever.
+    /// A link to itself: the system says to nobody what lies there.
     #[cfg(unix)]
     #[test]
     fn what_the_system_does_not_say_is_not_taken_for_absent() {

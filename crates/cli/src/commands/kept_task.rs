@@ -2,7 +2,8 @@
 
 use crate::args::TrainArgs;
 use crate::failure::Failure;
-use crate::number::{env_id, file_and_level, is_absent_file};
+use crate::number::{env_id, is_absent_file};
+use hasard_envs::own::path_and_level;
 use hasard_envs::{EnvId, Scenario};
 use hasard_learn::config::{EnvConfig, TrainConfig};
 use hasard_learn::runs::run_directory::{go_on, read_config};
@@ -27,7 +28,7 @@ pub fn named(args: &TrainArgs) -> Result<TrainArgs, Failure> {
                 quote(Path::new(&args.env))
             )));
         }
-        // What begins needs the file, and is told what is wrong with it.
+        // What begins needs the file: the line says what is wrong with it.
         _ => {
             args.env = env_id(&args.env).map_err(Failure::bad)?;
             return Ok(args);
@@ -45,7 +46,7 @@ fn id_of(word: &str, config: &TrainConfig, run: &Path) -> Result<String, Failure
     if !is_absent_file(word) {
         return env_id(word).map_err(Failure::bad);
     }
-    let (path, level) = file_and_level(word);
+    let (path, level) = path_and_level(word);
     let level = level.map_or(Some(1), |level| level.parse().ok());
     let kept = kept(&config.env, Path::new(path)).zip(level);
     let there = kept.filter(|(scenario, level)| (1..=scenario.levels.max(1)).contains(level));

@@ -11,7 +11,7 @@ pub mod export_agent;
 pub mod export_wad;
 pub mod highlights;
 mod init_from;
-pub mod kept_task;
+mod kept_task;
 pub mod metrics;
 pub mod new;
 pub mod play;

@@ -1,5 +1,6 @@
 //! `hasard train`: an agent from pixels.
 
+use super::kept_task;
 use super::sweep::plan;
 use super::train_settings::{fresh, unread};
 use crate::args::TrainArgs;
@@ -38,6 +39,7 @@ pub struct Begun {
 /// What the words of the command begin; `typed` says which flags were given and which have their
 /// default.
 pub fn begin(args: &TrainArgs, typed: &ArgMatches) -> Result<Begun, Failure> {
+    let args = &kept_task::named(args)?;
     let algorithm: AlgorithmKind = args.algo.parse().map_err(Failure::bad)?;
     // By the algorithm's own name, however it was typed.
     let directory = args.out.clone().unwrap_or_else(|| {

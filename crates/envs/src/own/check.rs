@@ -72,15 +72,12 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
 fn warn_of_costs(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
     let whens = || plans.iter().flat_map(|plan| &plan.whens);
     for (index, term) in names.terms.iter().enumerate() {
-        let mut amounts = whens()
-            .flat_map(|when| &when.costs)
-            .filter(|(of, _)| usize::from(*of) == index)
-            .map(|(_, amount)| *amount)
-            .peekable();
+        let own = |cost: &&(u8, f64)| usize::from(cost.0) == index;
+        let charges: Vec<&(u8, f64)> = whens().flat_map(|when| &when.costs).filter(own).collect();
         let name = &term.name;
-        if amounts.peek().is_none() {
+        if charges.is_empty() {
             mistakes.warn(0, format!("cost term {name} is charged by no [[when]]"));
-        } else if amounts.all(|amount| amount == 0.0) {
+        } else if charges.iter().all(|(_, amount)| *amount == 0.0) {
             mistakes
                 .warn(0, format!("cost term {name} is always 0: that is what [[when]] charges"));
         }
@@ -202,13 +199,7 @@ fn why(plan: &Plan, names: &Names, when: &When) -> String {
     if let Some(zone) = when.zone.filter(|zone| !is_somewhere(plan, *zone)) {
         return nowhere(zone);
     }
-    let unable = |of: Of, able: fn(ActorKind) -> bool, what: &str| {
-        if appears(plan, of, |_| true) && !appears(plan, of, able) {
-            return format!("{what}; name another in `of`");
-        }
-        "no such thing ever appears; put one down with [[spawn]] or the legend's `thing`"
-            .to_string()
-    };
+    let there = |of: Of| appears(plan, of, |_| true);
     match when.trigger {
         Trigger::Enter(of) | Trigger::Leave(of) | Trigger::In(of) => nowhere(of),
         Trigger::Damage { .. } => {
@@ -230,11 +221,14 @@ fn why(plan: &Plan, names: &Names, when: &When) -> String {
         Trigger::Timer { first, .. } => {
             format!("its first time is tic {first}, and an episode has {}", plan.tics)
         }
-        Trigger::Pickup(of) => unable(of, can_be_taken, "nobody can pick up such a thing"),
-        Trigger::Kill(of) | Trigger::Hit(of) => {
-            unable(of, can_be_shot, "nobody can shoot such a thing")
+        Trigger::Pickup(of) if there(of) => {
+            "nobody can pick up such a thing; name another in `of`".to_string()
         }
-        _ => unable(Of::default(), |_| true, ""),
+        Trigger::Kill(of) | Trigger::Hit(of) if there(of) => {
+            "nobody can shoot such a thing; name another in `of`".to_string()
+        }
+        _ => "no such thing ever appears; put one down with [[spawn]] or the legend's `thing`"
+            .to_string(),
     }
 }
 

@@ -185,7 +185,7 @@ pub(super) fn unknown<'a>(
     }
 }
 
-/// The word that was probably meant: one letter in three may be wrong, or the end left out.
+/// The known word that a mistyped one is near: one letter in three is wrong, or the end is left out.
 fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let upper: String = word.chars().take(24).collect::<String>().to_uppercase();
     let distance = |known: &&&str| edit_distance(&upper, &known.to_uppercase());

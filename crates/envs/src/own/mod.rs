@@ -38,6 +38,8 @@ mod world_tests;
 
 pub use mistakes::Mistake;
 pub use open::open;
-pub use place::{LARGEST_TEXT, changed, fingerprint, is_file, read_text, read_to_check};
+pub use place::{
+    LARGEST_TEXT, changed, fingerprint, is_file, path_and_level, read_text, read_to_check,
+};
 pub use task::{Checked, check, recall, register};
 pub use template::template;

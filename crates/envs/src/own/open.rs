@@ -1,7 +1,7 @@
 //! The environment that a scenario's file names: `my_task.toml`, or `my_task.toml#2` for its second
 //! level.
 
-use super::place::{is_file, read_text};
+use super::place::{path_and_level, read_text};
 use super::task::register;
 use crate::{EnvError, EnvId};
 use std::path::Path;
@@ -12,10 +12,7 @@ use std::path::Path;
 /// # Errors
 /// One line: the file's first mistake with its line and column, and how many there are.
 pub fn open(text: &str) -> Result<EnvId, EnvError> {
-    let (path, level) = match text.rsplit_once('#') {
-        Some((path, level)) if is_file(path) => (path, Some(level)),
-        _ => (text, None),
-    };
+    let (path, level) = path_and_level(text);
     let scenario = register(path, &read_text(Path::new(path))?)?;
     let levels = scenario.levels.max(1);
     let level = match level.map(|level| (level, level.parse::<u8>())) {

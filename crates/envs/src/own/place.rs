@@ -18,6 +18,15 @@ pub fn is_file(text: &str) -> bool {
     ends_so(text) || text.rsplit_once('#').is_some_and(|(path, _)| ends_so(path))
 }
 
+/// The path and the level, as written, of `my_task.toml#2`; of any other text the whole, and no level.
+#[must_use]
+pub fn path_and_level(text: &str) -> (&str, Option<&str>) {
+    match text.rsplit_once('#') {
+        Some((path, level)) if is_file(path) => (path, Some(level)),
+        _ => (text, None),
+    }
+}
+
 /// The text of a scenario's file, and of the maps that it names in other files.
 ///
 /// # Errors

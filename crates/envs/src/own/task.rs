@@ -287,6 +287,8 @@ fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
         };
         return Err(EnvError::Scenario { why: format!("{shown}:{first}{more}") });
     };
+    // Without mistakes all that is left are warnings.
+    let warnings = checked.mistakes.iter().map(|warning| intern(&warning.to_string())).collect();
     let first = &read.plans[0];
     let terms: Vec<CostTerm> = read
         .names
@@ -313,6 +315,7 @@ fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
             path: intern(path),
             text: intern(text),
             hash: intern(&place::fingerprint(text)),
+            warnings: Box::leak(warnings),
         }),
         ..ScenarioSpec::of(name, title, summary, Box::leak(Box::new(task)))
     };

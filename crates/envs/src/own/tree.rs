@@ -127,7 +127,7 @@ impl Node {
         }
     }
 
-    /// What it is where a number is asked for and it is none: `, not a text`; nothing of a number.
+    /// What to add to a message that asks for a number: `, not a list`; nothing where it is one.
     pub fn other_than_a_number(&self) -> String {
         match self.value {
             Value::Whole(_) | Value::Number(_) => String::new(),

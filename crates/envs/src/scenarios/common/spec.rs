@@ -102,6 +102,8 @@ pub struct ScenarioFile {
     pub text: &'static str,
     /// A fingerprint of its text, 16 hexadecimal digits.
     pub hash: &'static str,
+    /// What was warned of as it was read: `line:column: warning: ...` each.
+    pub warnings: &'static [&'static str],
 }
 
 /// A scenario: what is known of it without a world.
