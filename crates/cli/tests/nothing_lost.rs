@@ -309,3 +309,29 @@ fn an_exported_agent_replaces_agents_alone() {
     }
     assert!(!folder.0.join("two.agent").exists());
 }
+
+/// An agent at another temperature is another agent, made from a run, a file or the zoo's.
+#[test]
+fn an_agent_can_be_exported_at_another_temperature() {
+    let folder = trained("tempered");
+    folder.ok("export-agent run -o one.agent");
+    for named in ["run", "one.agent"] {
+        folder.ok(&format!("export-agent {named} --temperature 0.25 -o two.agent"));
+        let line = "eval two.agent --episodes 2 --json";
+        assert_ne!(folder.ok(line), folder.ok(&line.replace("two", "one")), "{named}");
+    }
+    folder.ok("export-agent zoo:RemedyRushLevel1 --temperature 2 -o three.agent");
+    let said = folder.ok("claim two.agent --name two --episodes 2 -o board --json");
+    let path: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let claim = String::from_utf8(folder.read(path["claim"].as_str().unwrap())).unwrap();
+    assert!(claim.contains("hasard export-agent RUN --temperature 0.25"), "{claim}");
+    for (flags, word) in [
+        ("--temperature 0", "from 0.01"),
+        ("--temperature -1", "from 0.01"),
+        ("--temperature cold", "from 0.01"),
+        ("--temperature 0.5 --latest", "leave --latest out"),
+    ] {
+        let said = folder.refused(&format!("export-agent one.agent {flags} -o four.agent"));
+        assert!(said.contains(word) && !folder.0.join("four.agent").exists(), "{flags}: {said}");
+    }
+}

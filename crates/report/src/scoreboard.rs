@@ -26,7 +26,7 @@ pub struct Entry {
     /// What it sees: `rgb`, `rgb+depth`, `segmented` or `grey`, with size and number of pictures
     /// where these are not the usual ones.
     pub sees: String,
-    /// Its action space: `simplified` or `full`.
+    /// Its action space: `simplified` or `full`; its temperature where it is not that of training.
     pub acts: String,
     /// Frames of its training.
     pub frames: f64,

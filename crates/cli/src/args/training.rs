@@ -4,6 +4,7 @@ use crate::args::common::{EnvArgs, ObservationArgs, PlaceArgs, Rules, UnusedSeed
 use crate::number::{env_id, env_id_of_run, positive, whole};
 use clap::Args;
 use hasard_envs::Scenario;
+use hasard_learn::runs::temperature::Temperature;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -244,11 +245,15 @@ pub struct MetricsArgs {
 /// `hasard export-agent`.
 #[derive(Args, Debug)]
 pub struct ExportAgentArgs {
-    /// Run directory
+    /// Run directory; with --temperature an agent's file or zoo:NAME too
     pub run: PathBuf,
     /// The latest checkpoint instead of the one that the run selected
     #[arg(long)]
     pub latest: bool,
+    /// Divide the policy's logits by T, so that below 1 it takes likelier actions more often than it
+    /// was trained to: from 0.01, nearly always the likeliest, to 100  [default: 1]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub temperature: Option<Temperature>,
     /// File to write, .agent; named after the environment if absent
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<PathBuf>,

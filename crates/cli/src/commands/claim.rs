@@ -7,10 +7,12 @@ use crate::commands::train_again;
 use crate::failure::{Failure, Outcome};
 use crate::settings::cores;
 use crate::zoo;
+use hasard_learn::config::TrainConfig;
 use hasard_learn::runs::agent::run_config;
 use hasard_learn::runs::agent_file::AgentFile;
 use hasard_learn::runs::checksum::sha256;
 use hasard_learn::runs::claim::{Claim, measure, wrong_words};
+use hasard_learn::runs::temperature::Temperature;
 use hasard_media::files::{Scratch, write_whole};
 use hasard_report::document::count;
 use serde_json::json;
@@ -80,7 +82,7 @@ pub fn run(args: &ClaimArgs) -> Outcome {
     });
     drop(scratch);
     let measured = measured?;
-    let how = args.how.clone().unwrap_or_else(|| train_again::command(&config));
+    let how = args.how.clone().unwrap_or_else(|| made_again(&config, measured.temperature));
     let claim = Claim::new(&args.name, &file, &bytes, &how, &measured);
     write_whole(&path, format!("{:#}\n", json!(claim)).as_bytes()).map_err(Failure::bad)?;
     let verified = format!("hasard verify {}", hasard_media::shell::quote(&path));
@@ -100,6 +102,15 @@ pub fn run(args: &ClaimArgs) -> Outcome {
         );
     }
     Ok(())
+}
+
+/// The commands that make an agent again.
+fn made_again(config: &TrainConfig, temperature: Temperature) -> String {
+    let train = train_again::command(config);
+    if temperature.is_as_trained() {
+        return train;
+    }
+    format!("{train}; hasard export-agent RUN --temperature {temperature}")
 }
 
 /// The claims of a folder, by name; one without any is refused.

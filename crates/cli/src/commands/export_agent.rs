@@ -5,7 +5,7 @@ use crate::failure::{Failure, Outcome};
 use crate::places;
 use crate::zoo::ENDING;
 use hasard_learn::error::LearnError;
-use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
+use hasard_learn::runs::agent_file::{AgentFile, export, export_latest, tempered};
 use hasard_learn::runs::run_directory::damaged_selection;
 use hasard_media::files::{WholeFile, what_lies_at};
 use hasard_media::shell::quote;
@@ -53,12 +53,38 @@ fn keep_others(out: &Path) -> Outcome {
     })
 }
 
+/// The bytes of a run's agent.
+fn of_run(args: &ExportAgentArgs, run: &Path) -> Result<Vec<u8>, Failure> {
+    if args.latest { export_latest(run) } else { export_selected(run) }.map_err(Failure::bad)
+}
+
+/// The bytes of an agent's file.
+fn as_it_is(args: &ExportAgentArgs, file: &Path) -> Result<Vec<u8>, Failure> {
+    if args.latest {
+        return Err(Failure::bad(format!(
+            "--latest: {} is an agent's file, which has one agent; leave --latest out",
+            file.display()
+        )));
+    }
+    Ok(AgentFile::read_whole(file).map_err(Failure::bad)?.0)
+}
+
 /// Runs the command.
 pub fn run(args: &ExportAgentArgs) -> Outcome {
     let run = places::run(args.run.as_os_str())?;
-    refuse_file(&args.run, &run)?;
-    let bytes = if args.latest { export_latest(&run) } else { export_selected(&run) };
-    let bytes = bytes.map_err(Failure::bad)?;
+    let bytes = match args.temperature {
+        Some(temperature) => {
+            let bytes =
+                if AgentFile::is_at(&run) { as_it_is(args, &run) } else { of_run(args, &run) };
+            tempered(&bytes?, temperature).map_err(|problem| {
+                Failure::bad(format!("--temperature {temperature}: {}: {problem}", run.display()))
+            })?
+        }
+        None => {
+            refuse_file(&args.run, &run)?;
+            of_run(args, &run)?
+        }
+    };
     let file = AgentFile::parse(&bytes).map_err(Failure::bad)?;
     let name = file.card.config.env.id.trim_end_matches("-v0");
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.{ENDING}")));

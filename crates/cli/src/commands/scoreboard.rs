@@ -7,6 +7,7 @@ use crate::settings::cores;
 use hasard_learn::config::EnvConfig;
 use hasard_learn::runs::checksum::sha256;
 use hasard_learn::runs::claim::{Claim, LISTED_EPISODES, Verdict};
+use hasard_learn::runs::temperature::Temperature;
 use hasard_report::scoreboard::{Entry, write_scoreboard};
 use serde_json::json;
 
@@ -54,7 +55,7 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
                 entries.push(Entry {
                     sees: sees(env),
                     text: own.map(|file| sha256(file.text.as_bytes())),
-                    acts: if env.full_actions { "full" } else { "simplified" }.into(),
+                    acts: acts(env, measured.temperature),
                     environment: claim.environment,
                     rules: claim.rules,
                     hard: claim.hard,
@@ -96,6 +97,15 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
             Err(Failure::Negative(format!("{count} claims are not listed; the page says why")))
         }
     })
+}
+
+/// An agent's action space, and its temperature where it has another than that of training.
+fn acts(env: &EnvConfig, temperature: Temperature) -> String {
+    let space = if env.full_actions { "full" } else { "simplified" };
+    if temperature.is_as_trained() {
+        return space.into();
+    }
+    format!("{space}, temperature {temperature}")
 }
 
 /// What an agent sees; its size and number of pictures where they are not the usual ones.

@@ -1,11 +1,10 @@
 //! An agent as one small file, to be handed to others: its settings, what it is worth, and weights
 //! of four or eight bits.
 //!
-//! The file is safetensors. Weights are cut into blocks of `BLOCK` that share a scale; a block's
-//! codes are whole numbers from `-m` to `m`, and a weight is its code times `scale / m`. Small
-//! tensors take eight bits a code. So do large ones where the file stays within `LIMIT`; otherwise
-//! four, two codes a byte. Statistics of pixels take sixteen bits. What is lost is about what a
-//! step of training changes; what the agent is worth with it, `hasard eval FILE` shows.
+//! The file is safetensors, its weights rounded to codes ([`crate::runs::rounding`]). Small tensors
+//! take eight bits a code. So do large ones where the file stays within `LIMIT`; otherwise four.
+//! Statistics of pixels take sixteen bits. What is lost is about what a step of training changes;
+//! what the agent is worth with it, `hasard eval FILE` shows.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
@@ -20,13 +19,13 @@ use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::networks::ModelShape;
 use crate::runs::checkpoint::{Loaded, Store, parameter_names};
+use crate::runs::rounding::{bits_of, round, unround};
 use crate::runs::run_directory::{GONE, go_on, read_config, read_selection, spoiled_selection};
 use crate::runs::selection::Candidate;
+use crate::runs::temperature::Temperature;
 use crate::runs::zoo;
 use crate::sampling::auxiliary::Auxiliary;
 
-/// Weights that share a scale.
-const BLOCK: usize = 64;
 /// Bytes that a file is to stay within, where four bits a weight suffice for it.
 const LIMIT: usize = 2_000_000;
 /// Tensors of fewer weights always take eight bits a code: early layers, heads and biases.
@@ -35,6 +34,8 @@ const SMALL: usize = 100_000;
 const LARGEST: u64 = 256 << 20;
 /// Layout of the file.
 const FORMAT: u32 = 1;
+/// The same of an agent with a temperature, which a program that knows of none must not play.
+const TEMPERED: u32 = 2;
 /// Name of the file's own entry among its metadata.
 const CARD: &str = "hasard";
 
@@ -49,6 +50,20 @@ pub struct Card {
     /// What the run said when it selected it, before its weights were rounded.
     #[serde(alias = "hand_out")]
     pub selection: Option<Candidate>,
+    /// What the policy's logits are divided by as it acts.
+    #[serde(default, skip_serializing_if = "Temperature::is_as_trained")]
+    pub temperature: Temperature,
+}
+
+impl Card {
+    /// The card of the same weights at this temperature.
+    fn at(self, temperature: Temperature) -> Card {
+        if temperature == self.temperature {
+            return self;
+        }
+        let format = if temperature.is_as_trained() { FORMAT } else { TEMPERED };
+        Card { format, temperature, selection: None, ..self }
+    }
 }
 
 /// An agent read from a file.
@@ -60,64 +75,6 @@ pub struct AgentFile {
     codes: HashMap<String, (Vec<u8>, Vec<f32>)>,
     pixel_mean: Vec<f64>,
     pixel_variance: Vec<f64>,
-}
-
-fn largest_code(bits: u32) -> f32 {
-    (1i32 << (bits - 1)).wrapping_sub(1) as f32
-}
-
-/// Codes and scales of some weights.
-fn round(weights: &[f32], bits: u32) -> (Vec<u8>, Vec<f32>) {
-    let most = largest_code(bits);
-    let mut scales = Vec::with_capacity(weights.len().div_ceil(BLOCK));
-    let mut codes: Vec<i8> = Vec::with_capacity(weights.len());
-    for block in weights.chunks(BLOCK) {
-        let scale = block.iter().fold(0.0f32, |largest, weight| largest.max(weight.abs()));
-        let unit = if scale > 0.0 { most / scale } else { 0.0 };
-        codes.extend(block.iter().map(|weight| (weight * unit).round().clamp(-most, most) as i8));
-        scales.push(scale);
-    }
-    let bytes = match bits {
-        8 => codes.iter().map(|code| code.cast_unsigned()).collect(),
-        _ => codes
-            .chunks(2)
-            .map(|two| nibble(two[0]) | nibble(two.get(1).copied().unwrap_or(0)) << 4)
-            .collect(),
-    };
-    (bytes, scales)
-}
-
-fn nibble(code: i8) -> u8 {
-    (code + 8).cast_unsigned() & 15
-}
-
-/// Bits of the codes of so many weights; `None` if codes and scales are not those of so many.
-fn bits_of(bytes: &[u8], scales: &[f32], count: usize) -> Option<u32> {
-    let bits = [(8, count), (4, count.div_ceil(2))]
-        .into_iter()
-        .find(|&(_, length)| bytes.len() == length)?
-        .0;
-    (scales.len() == count.div_ceil(BLOCK)).then_some(bits)
-}
-
-/// The weights that codes and scales stand for; `None` if they do not belong together.
-fn unround(bytes: &[u8], scales: &[f32], count: usize) -> Option<Vec<f32>> {
-    let bits = bits_of(bytes, scales, count)?;
-    let codes: Vec<i8> = match bits {
-        8 => bytes.iter().map(|byte| byte.cast_signed()).collect(),
-        _ => {
-            let two = |byte: &u8| [(byte & 15).cast_signed() - 8, (byte >> 4).cast_signed() - 8];
-            bytes.iter().flat_map(two).take(count).collect()
-        }
-    };
-    let blocks = codes.chunks(BLOCK).zip(scales);
-    Some(
-        blocks
-            .flat_map(|(block, scale)| {
-                block.iter().map(move |&code| f32::from(code) * scale / largest_code(bits))
-            })
-            .collect(),
-    )
 }
 
 /// The file of the agent that a run selects.
@@ -174,6 +131,7 @@ fn pack(
         program: env!("CARGO_PKG_VERSION").into(),
         config: config.clone(),
         selection,
+        temperature: Temperature::default(),
     };
     let card = serde_json::to_string(&card).map_err(|error| wrong(&error))?;
     let mut file = Vec::new();
@@ -213,6 +171,19 @@ fn pack(
         }
     }
     Ok(file)
+}
+
+/// The bytes of an agent's file whose policy acts at this temperature, whatever the file's was. What
+/// its run said of it is not in the new file: it was of another policy.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn tempered(bytes: &[u8], temperature: Temperature) -> Result<Vec<u8>, String> {
+    let card = AgentFile::parse(bytes)?.card.at(temperature);
+    let tensors = SafeTensors::deserialize(bytes).map_err(|error| error.to_string())?;
+    let card = serde_json::to_string(&card).map_err(|error| error.to_string())?;
+    serialize(tensors.iter(), Some(HashMap::from([(CARD.to_string(), card)])))
+        .map_err(|error| error.to_string())
 }
 
 /// Whether a tensor is of the head that predicts what pictures show, which nothing acts by: the one
@@ -299,8 +270,11 @@ impl AgentFile {
             .ok_or("its header describes no agent")?;
         let card: Card =
             serde_json::from_str(card).map_err(|error| format!("its card: {error}"))?;
-        if card.format != FORMAT {
-            return Err(format!("format {}, this program reads {FORMAT}", card.format));
+        if !(FORMAT..=TEMPERED).contains(&card.format) {
+            return Err(format!(
+                "format {}, this program reads {FORMAT} and {TEMPERED}",
+                card.format
+            ));
         }
         card.config.check().map_err(|error| error.to_string())?;
         let tensors = SafeTensors::deserialize(bytes).map_err(|error| error.to_string())?;
@@ -336,11 +310,17 @@ impl AgentFile {
         Ok(())
     }
 
-    /// Puts the weights into a learner.
+    /// Puts the weights into a learner, from which the agent acts.
     pub(crate) fn restore_weights(&self, learner: &mut Learner) -> Result<(), LearnError> {
+        self.restore(learner, self.card.temperature)
+    }
+
+    fn restore(&self, learner: &mut Learner, temperature: Temperature) -> Result<(), LearnError> {
+        let action = learner.shape().action.clone();
         for (name, _, range) in parameter_names(learner.shape()) {
             let (bytes, scales) = self.codes.get(&name).ok_or_else(|| misfit(&name))?;
-            let weights = unround(bytes, scales, range.len()).ok_or_else(|| misfit(&name))?;
+            let mut weights = unround(bytes, scales, range.len()).ok_or_else(|| misfit(&name))?;
+            temperature.apply(&action, &name, &mut weights);
             learner.parameters[range].copy_from_slice(&weights);
         }
         let pixels = learner.pixels.mean.len();
@@ -354,39 +334,13 @@ impl AgentFile {
     }
 
     /// Puts the weights into a learner that is to learn on: the statistics of pixels count as many
-    /// pictures as the agent's own training saw. What returns were like is not in the file.
+    /// pictures as the agent's own training saw. What returns were like is not in the file. It begins
+    /// with what was trained, whatever the temperature.
     pub(crate) fn begin(&self, learner: &mut Learner) -> Result<(), LearnError> {
-        self.restore_weights(learner).map_err(|_| LearnError::no_beginning("agent"))?;
+        self.restore(learner, Temperature::default())
+            .map_err(|_| LearnError::no_beginning("agent"))?;
         let config = &self.card.config;
         learner.pixels.count = (config.frames / u64::from(config.env.frame_skip).max(1)) as f64;
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn weights_come_back_to_within_half_a_code() {
-        let weights: Vec<f32> = (0..1001)
-            .map(|k| ((k * 7919 % 1000) as f32 / 500.0 - 1.0) * (1 + k / 64) as f32)
-            .collect();
-        for bits in [8, 4] {
-            let (codes, scales) = round(&weights, bits);
-            assert_eq!(codes.len(), if bits == 8 { 1001 } else { 501 });
-            let back = unround(&codes, &scales, weights.len()).unwrap();
-            for (index, (weight, other)) in weights.iter().zip(&back).enumerate() {
-                let step = scales[index / BLOCK] / largest_code(bits);
-                assert!(
-                    (weight - other).abs() <= step * 0.5001,
-                    "{bits} bits: {weight} became {other}"
-                );
-            }
-            assert!(unround(&codes[1..], &scales, weights.len()).is_none());
-            assert!(unround(&codes, &scales[1..], weights.len()).is_none());
-        }
-        let (codes, scales) = round(&[0.0; 10], 4);
-        assert_eq!(unround(&codes, &scales, 10), Some(vec![0.0; 10]));
     }
 }

@@ -17,6 +17,7 @@ use crate::runs::agent::{Choice, TrainedPolicy, Which, run_config};
 use crate::runs::agent_file::AgentFile;
 use crate::runs::checksum::sha256;
 use crate::runs::evaluate::{Evaluation, play};
+use crate::runs::temperature::Temperature;
 
 /// Seed of the first episode of every claim. Trainings and evaluations draw theirs elsewhere, and
 /// nobody can choose lucky ones.
@@ -73,6 +74,8 @@ pub struct Claim {
 pub struct Measured {
     /// The agent's settings, its environment under the claim's rules.
     pub config: TrainConfig,
+    /// The temperature that the agent's file plays at.
+    pub temperature: Temperature,
     /// The budget of the environment under these rules.
     pub budget: f64,
     /// Return, cost and tails.
@@ -180,7 +183,9 @@ pub fn measure(
     let played = play(&policy, Choice::Sampled, &make, &seeds, threads)?;
     let budget = id.safety_budget(options.rules, options.hard);
     let evaluation = Evaluation::of(&played, &[Constraint { term: None, budget }])?;
-    Ok(Measured { digest: digest(&played), config, budget, evaluation })
+    let temperature =
+        AgentFile::at(agent)?.map_or_else(Temperature::default, |file| file.card.temperature);
+    Ok(Measured { digest: digest(&played), config, temperature, budget, evaluation })
 }
 
 impl Claim {
