@@ -1,7 +1,7 @@
 //! An agent as one small file, to be handed to others: its settings, what it is worth, and weights
 //! of four or eight bits.
 //!
-//! The file is safetensors, its weights rounded to codes ([`crate::runs::rounding`]). Small tensors
+//! The file is safetensors, its weights rounded to codes (rounding.rs). Small tensors
 //! take eight bits a code. So do large ones where the file stays within `LIMIT`; otherwise four.
 //! Statistics of pixels take sixteen bits. What is lost is about what a step of training changes;
 //! what the agent is worth with it, `hasard eval FILE` shows.

@@ -1,6 +1,6 @@
 //! Weights as codes of four or eight bits.
 //!
-//! Weights are cut into blocks of [`BLOCK`] that share a scale; a block's codes are whole numbers
+//! Weights are cut into blocks of `BLOCK` that share a scale; a block's codes are whole numbers
 //! from `-m` to `m`, and a weight is its code times `scale / m`. Of four bits, a byte has two.
 
 /// Weights that share a scale.
