@@ -59,7 +59,7 @@ fn of_run(args: &ExportAgentArgs, run: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// The bytes of an agent's file.
-fn as_it_is(args: &ExportAgentArgs, file: &Path) -> Result<Vec<u8>, Failure> {
+fn of_file(args: &ExportAgentArgs, file: &Path) -> Result<Vec<u8>, Failure> {
     if args.latest {
         return Err(Failure::bad(format!(
             "--latest: {} is an agent's file, which has one agent; leave --latest out",
@@ -72,18 +72,15 @@ fn as_it_is(args: &ExportAgentArgs, file: &Path) -> Result<Vec<u8>, Failure> {
 /// Runs the command.
 pub fn run(args: &ExportAgentArgs) -> Outcome {
     let run = places::run(args.run.as_os_str())?;
+    if args.temperature.is_none() {
+        refuse_file(&args.run, &run)?;
+    }
+    let bytes = if AgentFile::is_at(&run) { of_file(args, &run)? } else { of_run(args, &run)? };
     let bytes = match args.temperature {
-        Some(temperature) => {
-            let bytes =
-                if AgentFile::is_at(&run) { as_it_is(args, &run) } else { of_run(args, &run) };
-            tempered(&bytes?, temperature).map_err(|problem| {
-                Failure::bad(format!("--temperature {temperature}: {}: {problem}", run.display()))
-            })?
-        }
-        None => {
-            refuse_file(&args.run, &run)?;
-            of_run(args, &run)?
-        }
+        None => bytes,
+        Some(temperature) => tempered(&bytes, temperature).map_err(|problem| {
+            Failure::bad(format!("--temperature {temperature}: {}: {problem}", run.display()))
+        })?,
     };
     let file = AgentFile::parse(&bytes).map_err(Failure::bad)?;
     let name = file.card.config.env.id.trim_end_matches("-v0");

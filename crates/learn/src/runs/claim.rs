@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use crate::config::{Constraint, EnvConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::networks::distribution::ActionShape;
-use crate::runs::agent::{Choice, TrainedPolicy, Which, run_config};
-use crate::runs::agent_file::AgentFile;
+use crate::runs::agent::{Choice, TrainedPolicy, Which};
+use crate::runs::agent_file::{AgentFile, Card};
 use crate::runs::checksum::sha256;
 use crate::runs::evaluate::{Evaluation, play};
 use crate::runs::temperature::Temperature;
@@ -153,7 +153,7 @@ fn unusual(env: &EnvConfig) -> Option<&'static str> {
     other.then_some("plays another task than its id names: a claim's has a frame_skip of 4, and no early_creatures")
 }
 
-/// Plays an agent's claim episodes under a rule set, by default its own.
+/// Plays the claim episodes of an agent's file under a rule set, by default its own.
 ///
 /// # Errors
 /// When the agent cannot be read, or plays another task than its id names.
@@ -163,7 +163,7 @@ pub fn measure(
     episodes: u32,
     threads: usize,
 ) -> Result<Measured, LearnError> {
-    let mut config = run_config(agent)?;
+    let Card { mut config, temperature, .. } = AgentFile::read(agent)?.card;
     if let Some(problem) = unusual(&config.env) {
         return Err(LearnError::content(agent, problem));
     }
@@ -183,8 +183,6 @@ pub fn measure(
     let played = play(&policy, Choice::Sampled, &make, &seeds, threads)?;
     let budget = id.safety_budget(options.rules, options.hard);
     let evaluation = Evaluation::of(&played, &[Constraint { term: None, budget }])?;
-    let temperature =
-        AgentFile::at(agent)?.map_or_else(Temperature::default, |file| file.card.temperature);
     Ok(Measured { digest: digest(&played), config, temperature, budget, evaluation })
 }
 
