@@ -85,7 +85,7 @@ fn a_run_that_goes_on_from_nothing_has_the_weights_that_it_began_with() {
         let elsewhere = place.with_extension("elsewhere");
         if place.is_file() {
             fs::copy(place, &elsewhere).unwrap();
-            fs::write(place, export_latest(&whole).unwrap()).unwrap();
+            fs::write(place, export_latest(&whole, &mut |line| panic!("{line}")).unwrap()).unwrap();
         } else {
             let settings = vec![format!("frames={}", config.frames + config.frames_per_rollout())];
             tiny::run(Start::Resume { settings }, place).0.unwrap();
@@ -143,12 +143,23 @@ fn the_latest_checkpoint_becomes_a_file_with_the_word_of_the_last_policy() {
     let longer = config.frames + 2 * config.frames_per_rollout();
     let settings = vec![format!("frames={longer}")];
     tiny::run(Start::Resume { settings }, &run).0.unwrap();
-    let latest = AgentFile::parse(&export_latest(&run).unwrap()).unwrap();
+    let latest =
+        AgentFile::parse(&export_latest(&run, &mut |line| panic!("{line}")).unwrap()).unwrap();
     let said = latest.card.selection.unwrap();
     let selection = read_selection(&run).unwrap();
     assert_eq!((said.frames, selection.selected.frames), (longer, config.frames));
     assert_eq!(said.closing, selection.last.map(|last| last.closing));
     assert_eq!(AgentFile::read(&file).unwrap().card.selection.unwrap().frames, config.frames);
+    // Damaged, it is passed over by name: what lies before it says nothing of the last policy.
+    let weights = run.join(format!("checkpoints/frames_{longer:012}/weights.safetensors"));
+    let mut bytes = fs::read(&weights).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    fs::write(&weights, bytes).unwrap();
+    let mut lines = Vec::new();
+    let before = export_latest(&run, &mut |line| lines.push(line)).unwrap();
+    assert!(AgentFile::parse(&before).unwrap().card.selection.is_none());
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert!(lines[0].starts_with(&*weights.to_string_lossy()), "{lines:?}");
     fs::remove_dir_all(run).unwrap();
     fs::remove_file(file).unwrap();
 }

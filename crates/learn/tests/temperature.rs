@@ -30,7 +30,7 @@ fn trained(name: &str, full: bool, mirror: bool) -> (TrainConfig, PathBuf, Vec<u
     config.frames = config.frames_per_rollout();
     let run = tiny::directory(name);
     tiny::trained_in(&worlds, Start::Fresh(config.clone()), &run);
-    let file = export_latest(&run).unwrap();
+    let file = export_latest(&run, &mut |line| panic!("{line}")).unwrap();
     (config, run, file)
 }
 

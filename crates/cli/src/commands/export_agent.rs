@@ -55,7 +55,9 @@ fn keep_others(out: &Path) -> Outcome {
 
 /// The bytes of a run's agent.
 fn of_run(args: &ExportAgentArgs, run: &Path) -> Result<Vec<u8>, Failure> {
-    if args.latest { export_latest(run) } else { export_selected(run) }.map_err(Failure::bad)
+    let mut warn = |text: String| note!("hasard: {text}");
+    if args.latest { export_latest(run, &mut warn) } else { export_selected(run) }
+        .map_err(Failure::bad)
 }
 
 /// The bytes of an agent's file.

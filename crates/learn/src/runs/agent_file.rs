@@ -102,11 +102,12 @@ pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
 }
 
 /// The file of the agent of a run's latest checkpoint; it says what the policy at the end of the
-/// run is worth, if that is the one.
-pub fn export_latest(run: &Path) -> Result<Vec<u8>, LearnError> {
+/// run is worth, if that is the one. `warn` gets a line for each damaged checkpoint that is passed
+/// over.
+pub fn export_latest(run: &Path, warn: &mut dyn FnMut(String)) -> Result<Vec<u8>, LearnError> {
     let config = read_config(run)?;
     let checkpoint = Store::new(run, 1)
-        .newest(&mut |_| {})?
+        .newest(warn)?
         .ok_or_else(|| LearnError::content(run, "no checkpoint was written yet; let it train"))?;
     let last = read_selection(run).and_then(|selection| selection.last);
     let selection = last.filter(|last| last.frames == checkpoint.progress.frames).map(|last| {
