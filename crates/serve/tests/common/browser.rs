@@ -154,9 +154,9 @@ impl Browser {
         self.here("DELETE", "/cookie", &Value::Null);
     }
 
-    /// Waits until a script returns true: a minute.
+    /// Waits until a script returns true: three minutes, for a busy machine takes more than one.
     pub fn wait(&self, text: &str) {
-        self.wait_for(text, Duration::from_secs(60));
+        self.wait_for(text, Duration::from_secs(180));
     }
 
     /// The same for what takes a training or the making of a film.
