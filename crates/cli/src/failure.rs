@@ -11,6 +11,11 @@ macro_rules! note {
     ($($argument:tt)*) => { $crate::failure::write_note(format!($($argument)*)) };
 }
 
+/// Says what went otherwise than one would expect, and the command goes on.
+pub fn warn(text: String) {
+    note!("hasard: {text}");
+}
+
 /// Why a command did not end well; decides the exit code.
 #[derive(Debug)]
 pub enum Failure {

@@ -4,7 +4,7 @@ use super::record::{GIF_SIZE, is_gif};
 use crate::actor::Performance;
 use crate::args::{EvalArgs, Size, View};
 use crate::episode_lines::EpisodeLines;
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Outcome, warn};
 use crate::places;
 use crate::settings::last_seed;
 use crate::ticker::Ticker;
@@ -258,7 +258,6 @@ impl Player<'_> {
     /// Its policy, for worlds like this one.
     fn policy(&self, env: &Env) -> Result<TrainedPolicy, Failure> {
         let action = ActionShape::from(env.action_space());
-        let mut warn = |text: String| note!("hasard: {text}");
         TrainedPolicy::load(self.run, self.which, env.observation_shape(), action, &mut warn)
             .map_err(Failure::bad)
     }

@@ -1,7 +1,7 @@
 //! `hasard export-agent`: the agent of a run as one small file.
 
 use crate::args::ExportAgentArgs;
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Outcome, warn};
 use crate::places;
 use crate::zoo::ENDING;
 use hasard_learn::error::LearnError;
@@ -55,7 +55,6 @@ fn keep_others(out: &Path) -> Outcome {
 
 /// The bytes of a run's agent.
 fn of_run(args: &ExportAgentArgs, run: &Path) -> Result<Vec<u8>, Failure> {
-    let mut warn = |text: String| note!("hasard: {text}");
     if args.latest { export_latest(run, &mut warn) } else { export_selected(run) }
         .map_err(Failure::bad)
 }

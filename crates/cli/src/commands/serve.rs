@@ -161,7 +161,7 @@ fn open(address: &str) {
 /// Trained agents as the other commands load them.
 #[cfg(feature = "serve")]
 mod trained {
-    use crate::failure::Failure;
+    use crate::failure::{Failure, warn};
     use crate::settings::{Elsewhere, trained_options};
     use hasard_envs::{Env, EnvOptions};
     use hasard_learn::networks::distribution::ActionShape;
@@ -187,7 +187,6 @@ mod trained {
         fn load(&self, run: &Path, best: bool, choice: Choice, env: &Env) -> Result<Agent, String> {
             let action = ActionShape::from(env.action_space());
             let which = if best { Which::Selected } else { Which::Latest };
-            let mut warn = |text: String| note!("hasard: {text}");
             Agent::load(run, which, choice, 1, env.observation_shape(), action, &mut warn)
                 .map_err(|error| error.to_string())
         }
