@@ -8,6 +8,7 @@
 
 use crate::networks::cpu::panels::Panels;
 use crate::networks::cpu::product::{Left, Size, multiply_panels};
+use crate::networks::cpu::symmetric::multiply_symmetric;
 use crate::networks::cpu::tile::PANEL;
 use crate::networks::{NetworkShape, Parameter, ParameterKind};
 use hasard_engine::simd::Simd;
@@ -131,27 +132,26 @@ impl Scratch {
         self.square.resize(low * low, 0.0);
         self.next.resize(low * wide, 0.0);
         let Scratch { matrix, next, gram, square, panels, rounded } = self;
-        let mut product = |rows: &[f32], inner: usize, panels: &Panels, out: &mut [f32]| {
-            let columns = out.len() / low;
-            let size = Size { rows: low, columns, inner };
-            let left = Left { data: rows, row_stride: inner, inner_stride: 1 };
-            multiply_panels(kernels, size, left, panels, out, columns, false, rounded);
-        };
         for _ in 0..STEPS {
             panels.pack_transposed(kernels, matrix, wide, low);
-            product(matrix, wide, panels, gram);
+            multiply_symmetric(kernels, low, of_rows(matrix, wide), panels, wide, gram, rounded);
             panels.pack(kernels, gram, low, low);
-            product(gram, low, panels, square);
+            multiply_symmetric(kernels, low, of_rows(gram, low), panels, low, square, rounded);
             for (gram, square) in gram.iter_mut().zip(square.iter()) {
                 *gram = third * *gram + fifth * square;
             }
             panels.pack(kernels, matrix, low, wide);
-            product(gram, low, panels, next);
+            let (size, left) = (Size { rows: low, columns: wide, inner: low }, of_rows(gram, low));
+            multiply_panels(kernels, size, left, panels, next, wide, false, rounded);
             for (matrix, next) in matrix.iter_mut().zip(next.iter()) {
                 *matrix = first * *matrix + next;
             }
         }
     }
+}
+
+fn of_rows(data: &[f32], width: usize) -> Left<'_> {
+    Left { data, row_stride: width, inner_stride: 1 }
 }
 
 #[cfg(test)]

@@ -227,6 +227,21 @@ pub fn multiply_panels(
     accumulate: bool,
     rounded: &mut Vec<u16>,
 ) {
+    multiply_panels_from(kernels, size, left, (right, 0), out, out_stride, accumulate, rounded);
+}
+
+/// As [`multiply_panels`], of the right factor's panels from one on.
+#[allow(clippy::too_many_arguments, reason = "two factors, a result and scratch")]
+pub(super) fn multiply_panels_from(
+    kernels: Simd,
+    size: Size,
+    left: Left<'_>,
+    (right, panel): (&Panels, usize),
+    out: &mut [f32],
+    out_stride: usize,
+    accumulate: bool,
+    rounded: &mut Vec<u16>,
+) {
     let Size { rows, columns, inner } = size;
     let pairs = match right {
         Panels::Numbers(data) => {
@@ -234,7 +249,7 @@ pub fn multiply_panels(
                 kernels,
                 size,
                 left,
-                Right::panels(data, inner),
+                Right::panels(&data[panel * inner * PANEL..], inner),
                 out,
                 out_stride,
                 accumulate,
@@ -258,7 +273,7 @@ pub fn multiply_panels(
             rows: Axis::plain(count, width),
             inner: Axis::plain(width / 2, 2),
         };
-        let right = Right::panels(&pairs[..], width / 2);
+        let right = Right::panels(&pairs[panel * (width / 2) * PANEL..], width / 2);
         multiply_grouped(
             kernels,
             factor,

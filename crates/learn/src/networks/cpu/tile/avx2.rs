@@ -15,6 +15,7 @@ pub unsafe fn tile<const ROWS: usize, const AHEAD: u8>(
         _MM_HINT_T1, _mm_prefetch, _mm256_add_ps, _mm256_fmadd_ps, _mm256_loadu_ps, _mm256_set1_ps,
         _mm256_setzero_ps, _mm256_storeu_ps,
     };
+    use std::hint::black_box;
     // SAFETY: see [`Tile::run`]; a prefetch of any address is harmless.
     unsafe {
         for half in [0, 16] {
@@ -29,7 +30,11 @@ pub unsafe fn tile<const ROWS: usize, const AHEAD: u8>(
                 }
             }
             for _ in 0..tile.parts {
+                // The rows from the fourth on have a pointer of their own, which the compiler cannot
+                // derive from the first: else it goes from row to row by additions, each of which
+                // waits for the one before, six in the time of twelve products.
                 let mut left = part;
+                let mut lower = black_box(part.wrapping_add(3 * tile.row_stride));
                 for _ in 0..tile.inner {
                     if AHEAD & (if half == 0 { LEFT } else { RIGHT }) != 0 {
                         _mm_prefetch::<_MM_HINT_T1>(ahead.cast());
@@ -38,11 +43,17 @@ pub unsafe fn tile<const ROWS: usize, const AHEAD: u8>(
                     let low = _mm256_loadu_ps(right);
                     let high = _mm256_loadu_ps(right.add(8));
                     for (row, pair) in sums.iter_mut().enumerate() {
-                        let factor = _mm256_set1_ps(*left.add(row * tile.row_stride));
+                        let from = if row < 3 {
+                            left.wrapping_add(row * tile.row_stride)
+                        } else {
+                            lower.wrapping_add((row - 3) * tile.row_stride)
+                        };
+                        let factor = _mm256_set1_ps(*from);
                         pair[0] = _mm256_fmadd_ps(factor, low, pair[0]);
                         pair[1] = _mm256_fmadd_ps(factor, high, pair[1]);
                     }
                     left = left.wrapping_add(tile.left_inner);
+                    lower = lower.wrapping_add(tile.left_inner);
                     right = right.wrapping_add(tile.right_inner);
                 }
                 part = part.wrapping_add(tile.left_part);
