@@ -327,6 +327,11 @@ fn an_evaluation_shows_the_tails() {
         bins.len() == 10 && summary["calibration"][0]["steps"].as_u64().unwrap() > 500,
         "{summary}"
     );
+    // An agent's file knows what returns were like too.
+    folder.ok("export-agent run --latest -o run.agent");
+    let of_file = folder.ok("eval run.agent --episodes 2 --json --calibration file.csv");
+    let summary: Value = serde_json::from_str(of_file.lines().last().unwrap()).unwrap();
+    assert_eq!(summary["summary"]["calibration"][0]["bins"].as_array().unwrap().len(), 10);
     let plain = folder.ok("eval run --episodes 3");
     assert!(
         plain.contains("mean of the worst tenth")

@@ -7,7 +7,7 @@ use hasard_learn::runs::agent_file::{AgentFile, export, export_latest};
 use hasard_learn::runs::run_directory::{read_config, read_selection};
 use hasard_learn::runs::trainer::Start;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A run that has selected a checkpoint, and the file of its agent.
 fn trained(name: &str) -> (TrainConfig, PathBuf, PathBuf) {
@@ -56,6 +56,37 @@ fn a_run_begins_with_the_weights_of_a_file() {
         }
     }
     assert!(largest_step > 0.0, "the file has eight bits a weight, the run thirty-two");
+    for at in [run, second] {
+        fs::remove_dir_all(at).unwrap();
+    }
+    fs::remove_file(file).unwrap();
+}
+
+/// The critics' values are in units of what returns were like, which the new run's join.
+#[test]
+fn a_run_begins_with_the_statistics_of_returns_of_a_file() {
+    let (config, run, file) = trained("from-returns");
+    let second = tiny::directory("from-returns-second");
+    tiny::run(Start::From(config, file.clone()), &second).0.unwrap();
+    let returns = |run: &Path| {
+        let file = AgentFile::parse(&export_latest(run, &mut |line| panic!("{line}")).unwrap());
+        file.unwrap().card.returns
+    };
+    let (before, after) = (returns(&run), returns(&second));
+    assert_eq!((before.len(), after.len()), (2, 2), "of the return and of a cost");
+    for (before, after) in before.iter().zip(&after) {
+        // The made-up first draw of the first run, then as many of each run.
+        assert!(before.count > 1.0);
+        assert_eq!(after.count, 1.0 + 2.0 * (before.count - 1.0));
+        assert!(before.variance > 0.0 && before.mean != 0.0);
+    }
+    // A file of a program that wrote none; the card is a text in the header, its quotes marked.
+    let mut bytes = fs::read(&file).unwrap();
+    let name = br#"\"returns\":["#;
+    let at = bytes.windows(name.len()).position(|some| some == name).expect("statistics");
+    bytes[at + 2] = b'R';
+    let old = AgentFile::parse(&bytes).unwrap();
+    assert!(old.card.returns.is_empty());
     for at in [run, second] {
         fs::remove_dir_all(at).unwrap();
     }

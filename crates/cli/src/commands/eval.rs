@@ -89,7 +89,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
         if policy.cost_units().is_empty() {
             return Err(Failure::bad(format!(
                 "--calibration: {}: has no critics of costs whose units are known and that see no more than an agent at work; give \
-                 the run directory of an algorithm that has them, such as PPOPID",
+                 the run directory, or an agent newly exported, of an algorithm that has them, such as PPOPID",
                 args.run.to_string_lossy()
             )));
         }

@@ -66,6 +66,17 @@ impl Moments {
         self.update(values);
     }
 
+    /// Whether some draws have these moments: finite, and spread by no less than nothing.
+    #[must_use]
+    pub fn are_sound(&self) -> bool {
+        let Moments { count, mean, variance } = *self;
+        count.is_finite()
+            && count >= 1.0
+            && mean.is_finite()
+            && variance.is_finite()
+            && variance >= 0.0
+    }
+
     /// The running deviation.
     #[must_use]
     pub fn deviation(&self) -> f64 {
@@ -253,6 +264,20 @@ mod tests {
         let value = moments.normalise(3.0);
         assert!((moments.denormalise(value) - 3.0).abs() < 1e-6);
         assert_eq!(moments.normalise(1e6), 5.0);
+    }
+
+    #[test]
+    fn moments_that_no_draws_have_are_known() {
+        let moments = Moments { count: 3.0, mean: -1.0, variance: 0.0 };
+        assert!(Moments::default().are_sound() && moments.are_sound());
+        for wrong in [
+            Moments { variance: -1.0, ..moments },
+            Moments { variance: f64::NAN, ..moments },
+            Moments { mean: f64::INFINITY, ..moments },
+            Moments { count: 0.0, ..moments },
+        ] {
+            assert!(!wrong.are_sound(), "{wrong:?}");
+        }
     }
 
     /// A12: the moments follow returns that change (equation 7 of van Hasselt et al. 2016, an

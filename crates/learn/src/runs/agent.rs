@@ -171,13 +171,17 @@ impl TrainedPolicy {
         warn: &mut dyn FnMut(String),
     ) -> Result<TrainedPolicy, LearnError> {
         if let Some(file) = AgentFile::at(directory)? {
-            return TrainedPolicy::restored(
+            let policy = TrainedPolicy::restored(
                 &file.card.config,
                 observation,
                 action,
                 |shape| file.check_fits(shape),
                 |learner| file.restore_weights(learner),
-            );
+            )?;
+            let card = &file.card;
+            let frames = card.selection.as_ref().map_or(card.config.frames, |one| one.frames);
+            let cost_gamma = card.config.cost_gamma_after(frames);
+            return Ok(TrainedPolicy { cost_gamma, ..policy }.in_units_of(&card.returns));
         }
         let config = read_config(directory)?;
         let store = Store::new(directory, 1);
@@ -216,19 +220,18 @@ impl TrainedPolicy {
             |shape| loaded.check_fits(shape),
             |learner| loaded.restore_weights(learner),
         )?;
-        let critics = 1 + policy.shape.cost_critics;
         let cost_gamma = config.cost_gamma_after(loaded.progress.frames);
         let policy = TrainedPolicy { cost_gamma, run_frames: store.frames(), ..policy };
-        Ok(if loaded.progress.returns.len() == critics {
-            policy.in_units_of(&loaded.progress.returns)
-        } else {
-            policy
-        })
+        Ok(policy.in_units_of(&loaded.progress.returns))
     }
 
-    /// Its critics' values are normalised returns in the units of these moments.
+    /// Its critics' values are normalised returns in the units of these moments, if there are some
+    /// for each critic.
     #[must_use]
     pub fn in_units_of(self, returns: &[Moments]) -> TrainedPolicy {
+        if returns.len() != 1 + self.shape.cost_critics {
+            return self;
+        }
         TrainedPolicy { returns: returns.to_vec(), ..self }
     }
 

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
+use crate::learning::normaliser::Moments;
 use crate::networks::ModelShape;
 use crate::runs::checkpoint::{Loaded, Store, parameter_names};
 use crate::runs::rounding::{bits_of, round, unround};
@@ -53,6 +54,10 @@ pub struct Card {
     /// What the policy's logits are divided by as it acts.
     #[serde(default, skip_serializing_if = "Temperature::is_as_trained")]
     pub temperature: Temperature,
+    /// Statistics of each critic's returns, in whose units the critics' values are; none in files
+    /// of programs that did not write them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub returns: Vec<Moments>,
 }
 
 impl Card {
@@ -133,6 +138,7 @@ fn pack(
         config: config.clone(),
         selection,
         temperature: Temperature::default(),
+        returns: checkpoint.progress.returns.clone(),
     };
     let card = serde_json::to_string(&card).map_err(|error| wrong(&error))?;
     let mut file = Vec::new();
@@ -278,6 +284,9 @@ impl AgentFile {
             ));
         }
         card.config.check().map_err(|error| error.to_string())?;
+        if !card.returns.iter().all(Moments::are_sound) {
+            return Err("its card: statistics of returns that no returns have".into());
+        }
         let tensors = SafeTensors::deserialize(bytes).map_err(|error| error.to_string())?;
         let mut codes = HashMap::new();
         for (name, view) in tensors.iter().filter(|(_, view)| view.dtype() == Dtype::U8) {
@@ -335,13 +344,16 @@ impl AgentFile {
     }
 
     /// Puts the weights into a learner that is to learn on: the statistics of pixels count as many
-    /// pictures as the agent's own training saw. What returns were like is not in the file. It begins
-    /// with what was trained, whatever the temperature.
+    /// pictures as the agent's own training saw. It begins with what was trained, whatever the
+    /// temperature.
     pub(crate) fn begin(&self, learner: &mut Learner) -> Result<(), LearnError> {
         self.restore(learner, Temperature::default())
             .map_err(|_| LearnError::no_beginning("agent"))?;
         let config = &self.card.config;
         learner.pixels.count = (config.frames / u64::from(config.env.frame_skip).max(1)) as f64;
+        if self.card.returns.len() == learner.returns.len() {
+            learner.returns.clone_from(&self.card.returns);
+        }
         Ok(())
     }
 }
