@@ -354,6 +354,13 @@ impl Learner {
         Ok(())
     }
 
+    /// Goes on with statistics of returns, if there are some for each critic.
+    pub fn begin_with(&mut self, returns: &[Moments]) {
+        if returns.len() == self.returns.len() {
+            self.returns.copy_from_slice(returns);
+        }
+    }
+
     /// Notes that parameters or statistics were replaced from outside.
     pub fn replaced(&mut self) {
         self.stale.fill(true);

@@ -134,24 +134,21 @@ impl Scratch {
         let Scratch { matrix, next, gram, square, panels, rounded } = self;
         for _ in 0..STEPS {
             panels.pack_transposed(kernels, matrix, wide, low);
-            multiply_symmetric(kernels, low, of_rows(matrix, wide), panels, wide, gram, rounded);
+            multiply_symmetric(kernels, low, Left::rows(matrix, wide), panels, wide, gram, rounded);
             panels.pack(kernels, gram, low, low);
-            multiply_symmetric(kernels, low, of_rows(gram, low), panels, low, square, rounded);
+            multiply_symmetric(kernels, low, Left::rows(gram, low), panels, low, square, rounded);
             for (gram, square) in gram.iter_mut().zip(square.iter()) {
                 *gram = third * *gram + fifth * square;
             }
             panels.pack(kernels, matrix, low, wide);
-            let (size, left) = (Size { rows: low, columns: wide, inner: low }, of_rows(gram, low));
+            let (size, left) =
+                (Size { rows: low, columns: wide, inner: low }, Left::rows(gram, low));
             multiply_panels(kernels, size, left, panels, next, wide, false, rounded);
             for (matrix, next) in matrix.iter_mut().zip(next.iter()) {
                 *matrix = first * *matrix + next;
             }
         }
     }
-}
-
-fn of_rows(data: &[f32], width: usize) -> Left<'_> {
-    Left { data, row_stride: width, inner_stride: 1 }
 }
 
 #[cfg(test)]

@@ -351,9 +351,7 @@ impl AgentFile {
             .map_err(|_| LearnError::no_beginning("agent"))?;
         let config = &self.card.config;
         learner.pixels.count = (config.frames / u64::from(config.env.frame_skip).max(1)) as f64;
-        if self.card.returns.len() == learner.returns.len() {
-            learner.returns.clone_from(&self.card.returns);
-        }
+        learner.begin_with(&self.card.returns);
         Ok(())
     }
 }

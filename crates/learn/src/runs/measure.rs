@@ -121,7 +121,7 @@ fn product_rate(kernels: Simd, threads: usize) -> f64 {
             let mut count = 0;
             while start.elapsed().as_secs_f64() < 0.3 {
                 let size = Size { rows: SIDE, columns: SIDE, inner: SIDE };
-                let factor = Left { data: &left, row_stride: SIDE, inner_stride: 1 };
+                let factor = Left::rows(&left, SIDE);
                 multiply_panels(kernels, size, factor, &right, &mut out, SIDE, false, &mut rounded);
                 count += 1;
             }

@@ -43,7 +43,7 @@ impl RowGradients {
         self.dense.resize_with(shape.dense.len(), Vec::new);
         let padded = plan.padded_outputs;
         let units = shape.dense[shape.dense.len() - 1];
-        let from_outputs = Left { data: &self.outputs, row_stride: padded, inner_stride: 1 };
+        let from_outputs = Left::rows(&self.outputs, padded);
         let last = sized(&mut self.dense[shape.dense.len() - 1], rows * units);
         if let Some(cell_units) = shape.recurrent {
             let core = sized(&mut self.core, rows * cell_units);
@@ -60,7 +60,7 @@ impl RowGradients {
             );
             self.recur(plan, back, lanes, reset, cell_units);
             let (last, columns) = (&mut self.dense[shape.dense.len() - 1], shape.gate_columns());
-            let left = Left { data: &self.input_sums, row_stride: columns, inner_stride: 1 };
+            let left = Left::rows(&self.input_sums, columns);
             let size = Size { rows, columns: units, inner: columns };
             multiply_panels(
                 kernels,
@@ -103,7 +103,7 @@ impl RowGradients {
                 None => (&mut self.features, plan.features),
             };
             let to = sized(to, rows * inputs);
-            let left = Left { data: sums, row_stride: units, inner_stride: 1 };
+            let left = Left::rows(sums, units);
             let size = Size { rows, columns: inputs, inner: units };
             multiply_panels(
                 kernels,
@@ -164,7 +164,7 @@ impl RowGradients {
                 }
             }
             let size = Size { rows: count, columns: units, inner: columns };
-            let left = Left { data: state_sums, row_stride: columns, inner_stride: 1 };
+            let left = Left::rows(state_sums, columns);
             multiply_panels(
                 kernels,
                 size,

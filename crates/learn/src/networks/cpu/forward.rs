@@ -197,7 +197,7 @@ impl Forward {
                 }
             }
             let size = Size { rows: lanes.len(), columns, inner: units };
-            let left = Left { data: &self.state, row_stride: width, inner_stride: 1 };
+            let left = Left::rows(&self.state, width);
             multiply_panels(
                 kernels,
                 size,

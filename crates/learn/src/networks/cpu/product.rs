@@ -64,6 +64,14 @@ pub struct Right<'a, T = f32> {
     pub inner_stride: usize,
 }
 
+impl<'a> Left<'a> {
+    /// A matrix of `width` columns stored row by row.
+    #[must_use]
+    pub fn rows(data: &'a [f32], width: usize) -> Left<'a> {
+        Left { data, row_stride: width, inner_stride: 1 }
+    }
+}
+
 impl<'a, T> Right<'a, T> {
     /// A matrix of `width` columns stored row by row.
     #[must_use]

@@ -49,7 +49,7 @@ mod tests {
                 let mut rounded = Vec::new();
                 let mut panels = Panels::default();
                 let mut both = |rows: &[f32], inner: usize, panels: &Panels| {
-                    let left = Left { data: rows, row_stride: inner, inner_stride: 1 };
+                    let left = Left::rows(rows, inner);
                     let (mut whole, mut half) = (vec![1.0; side * side], vec![2.0; side * side]);
                     let size = Size { rows: side, columns: side, inner };
                     let rounded = &mut rounded;

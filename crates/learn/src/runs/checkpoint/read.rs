@@ -116,9 +116,7 @@ impl Loaded {
         learner.pixels.variance =
             parse_doubles(&find("pixels.variance")?, pixels, "pixels.variance")?;
         learner.pixels.count = self.progress.pixel_count;
-        if self.progress.returns.len() == learner.returns.len() {
-            learner.returns.clone_from(&self.progress.returns);
-        }
+        learner.begin_with(&self.progress.returns);
         learner.replaced();
         Ok(())
     }

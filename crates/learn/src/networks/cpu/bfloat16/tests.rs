@@ -122,7 +122,7 @@ fn products_are_what_is_defined_and_near_those_of_numbers() {
                 let stride = columns + 3;
                 let before = noise(rows * stride, 4);
                 let mut out = before.clone();
-                let factor = Left { data: &left, row_stride: inner, inner_stride: 1 };
+                let factor = Left::rows(&left, inner);
                 let size = Size { rows, columns, inner };
                 multiply_panels(
                     kernels,

@@ -77,7 +77,7 @@ fn long_products_end_and_equal_plain_sums() {
         let (left, right) = (noise(2 * inner, 1), noise(inner * PANEL, 2));
         for kernels in Simd::available() {
             let mut out = vec![0.0; 2 * PANEL];
-            let factor = Left { data: &left, row_stride: inner, inner_stride: 1 };
+            let factor = Left::rows(&left, inner);
             multiply(
                 kernels,
                 Size { rows: 2, columns: PANEL, inner },
@@ -112,7 +112,7 @@ fn neither_the_width_of_registers_nor_the_number_of_rows_changes_a_bit() {
         let mut out = vec![0.0; rows * columns];
         let mut first = 0;
         for &rows in parts {
-            let factor = Left { data: &left[first * inner..], row_stride: inner, inner_stride: 1 };
+            let factor = Left::rows(&left[first * inner..], inner);
             let size = Size { rows, columns, inner };
             multiply(
                 kernels,
