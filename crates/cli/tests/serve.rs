@@ -49,6 +49,13 @@ fn serve(folder: &Path, listen: &str) -> (Running, String) {
     (server, line.trim().trim_end_matches('/').to_owned())
 }
 
+/// Whether the page shows these two numbers of an agent.
+fn numbers(of_return: &str, of_cost: &str) -> String {
+    format!(
+        "['{of_return}', '{of_cost}'].every((name) => [...document.querySelectorAll('#numbers > span')].some((one) => one.firstChild.textContent == name && /^-?[0-9.]+$/.test(one.lastChild.innerText)))"
+    )
+}
+
 #[test]
 fn a_training_is_followed_and_its_agent_watched_to_its_cost() {
     let Some(browser) = Browser::open(1280, 1000, false) else { return };
@@ -93,6 +100,14 @@ fn a_training_is_followed_and_its_agent_watched_to_its_cost() {
         .output()
         .unwrap();
     assert!(exported.status.success());
+    // A file of a program that did not say what returns were like has values without a unit.
+    let mut older = std::fs::read(folder.join("zoo/Tiny.agent")).unwrap();
+    let name = br#"\"returns\":["#;
+    let at = older.windows(name.len()).position(|some| some == name).expect("statistics");
+    older[at + 2] = b'R';
+    std::fs::write(folder.join("zoo/Unitless.agent"), older).unwrap();
+    browser.go(&format!("{address}/#watch?agent=zoo:Unitless&seed=3"));
+    browser.wait_long(&numbers("return value (normalised)", "cost value (normalised)"));
     browser.go(&format!("{address}/#watch?agent=zoo:Tiny&seed=3"));
     let step = "Number(document.querySelector('#numbers b')?.innerText)";
     browser.wait_long(&format!("{step} > 5"));
@@ -103,7 +118,8 @@ fn a_training_is_followed_and_its_agent_watched_to_its_cost() {
     let sums = "[...document.querySelectorAll('#thoughts .group')].map((group) => [...group.querySelectorAll('meter')].reduce((sum, one) => sum + one.value, 0))";
     browser
         .wait(&format!("{sums}.length >= 3 && {sums}.every((sum) => Math.abs(sum - 1) < 0.001)"));
-    browser.wait("['return value (normalised)', 'cost value (normalised)'].every((name) => [...document.querySelectorAll('#numbers > span')].some((one) => one.firstChild.textContent == name && /^-?[0-9.]+$/.test(one.lastChild.innerText)))");
+    // Its file says what returns were like in training, so both are in units of return and cost.
+    browser.wait(&numbers("expected return", "expected cost"));
     browser.wait_long("document.querySelector('[data-kind=cost]')");
     browser.script("document.querySelector('[data-kind=cost]').click()");
     browser.wait(&format!(
