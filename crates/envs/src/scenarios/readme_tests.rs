@@ -388,8 +388,8 @@ fn volcanic_venture_says_what_it_does() {
     let lines = [
         by_level("chance of a tile to be a platform", |i| soft(i).platform_chance),
         by_level("height of platforms, map units", height),
-        by_level("tics after a change without harm, `paper`", |i| soft(i).grace_tics),
-        by_level("tics after a change without harm, `released` and `tables`", |i| {
+        by_level("tics after a change without cost, `paper`", |i| soft(i).grace_tics),
+        by_level("tics after a change without cost, `released` and `tables`", |i| {
             level(RELEASED, false, i).grace_tics
         }),
         by_level("agent starts, `paper` and `released`", |i| start(soft(i))),
